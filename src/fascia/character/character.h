@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include <fascia/character/character_def.h>
+#include <fascia/motion/clip.h>
+#include <fascia/skin/skin.h>
+
+namespace fascia {
+
+// What the command line may override without touching the file.
+struct BuildOptions {
+  int columns = 0, rows = 0;  // 0 = as in the file
+  std::string integrator;     // empty = as in the file
+  double step_s = -1;         // negative = as in the file
+};
+
+// A constant, validated character: skeleton, flesh, skin and motions ready to run.
+class Character {
+ public:
+  // Throws Error with all faults of `def` (JSON pointers, no file or line).
+  explicit Character(const CharacterDef& def, const BuildOptions& options = {});
+
+  const CharacterDef& def() const { return def_; }
+  const Skeleton& skeleton() const { return skeleton_; }
+  const Flesh& flesh() const { return flesh_; }
+  const Flesh& ornaments() const { return ornaments_; }
+  const Skin* skin() const { return skin_.get(); }  // nullptr: a character without skin
+  std::size_t motionCount() const { return clips_.size(); }
+  const BoundClip& motion(std::size_t i) const { return clips_[i]; }
+  // Index of a motion by name; empty name = the first; -1 = none of that name.
+  int findMotion(std::string_view name) const;
+
+ private:
+  CharacterDef def_;
+  Skeleton skeleton_;
+  Flesh flesh_, ornaments_;
+  std::unique_ptr<const Skin> skin_;
+  std::vector<BoundClip> clips_;
+};
+
+// What changes over time: a plain value that can be copied, hashed, saved and rewound.
+struct CharacterState {
+  double time_s = 0;
+  Posture posture;
+  PosedSkeleton skeleton;
+  PosedFlesh flesh;
+  PosedFlesh ornaments;
+  SkinState skin;
+  SkinWorkspace workspace;  // scratch memory, not part of the state's meaning
+
+  std::uint64_t hash() const;  // over time, posture and skin
+};
+
+// The state at time 0 of a motion (-1: the rest posture), settled for simulation.settle_s.
+CharacterState initialState(const Character& character, int motion);
+
+// One frame: motion → skeleton → flesh → skin. dt_s in [1e-4, 1/12].
+void advance(const Character& character, int motion, double dt_s, CharacterState& state,
+             SkinStats& stats);
+
+}  // namespace fascia

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fascia/character/character.h>
+
+namespace fascia {
+
+// A simulated motion, frame by frame: what a bake writes and a player reads (L19).
+struct Recording {
+  struct Frame {
+    double time_s = 0;
+    std::vector<double> posture;                   // Posture::values
+    std::vector<Eigen::Vector3f> skin_m;           // vertices in skinSurface order; may be empty
+  };
+  std::string motion;          // its name; empty = the rest posture
+  double frame_rate_hz = 60;
+  bool loop = false;
+  TriangleMesh skin;           // topology and uvs; positions = the first frame's
+  std::vector<Frame> frames;
+  SkinStats stats;
+  double wall_s = 0, simulated_s = 0;
+  std::uint64_t state_hash = 0;  // of the last CharacterState
+};
+
+struct RecordOptions {
+  int motion = -1;             // index; -1 = the rest posture
+  double frame_rate_hz = 0;    // 0 = as in the file
+  double duration_s = 0;       // 0 = the motion's
+  double start_s = 0;          // frames before this are simulated, but not kept
+  // Called after every frame with the fraction done; false stops (recording is then discarded).
+  std::function<bool(double)> progress;
+};
+
+// Throws Error("stopped") when progress asked to stop.
+Recording record(const Character& character, const RecordOptions& options);
+
+}  // namespace fascia

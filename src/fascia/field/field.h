@@ -1,0 +1,27 @@
+#pragma once
+
+#include <fascia/base/aligned.h>
+#include <fascia/base/ids.h>
+#include <fascia/math/types.h>
+
+namespace fascia {
+
+// The weakest thing a skin can rest on: a set of posed solids with velocities, at one moment.
+// Everything is in world space. Implemented by PosedFlesh; a test can hand over one sphere.
+class Field {
+ public:
+  virtual ~Field() = default;
+  virtual std::size_t solidCount() const = 0;
+  virtual Box bounds(SolidId solid) const = 0;
+  // Signed distance estimate (m, negative inside) and outward unit normal at `points`.
+  // Reads and writes points.count entries of each array; no alignment required.
+  virtual void evaluate(SolidId solid, ConstVectors points, float* distance_m,
+                        Vectors normal) const = 0;
+  // Velocity of the solid's own matter at each point (rigid motion and swelling), m/s.
+  virtual void velocity(SolidId solid, ConstVectors points, Vectors velocity) const = 0;
+  // Material coordinates move with the solid and swell with it: anchors live there.
+  virtual Vec3 materialFromWorld(SolidId solid, const Vec3& world) const = 0;
+  virtual Vec3 worldFromMaterial(SolidId solid, const Vec3& material) const = 0;
+};
+
+}  // namespace fascia
