@@ -1,0 +1,11 @@
+# What the modules link. Used by the build, and by the installed package (static libraries pass
+# their private dependencies on to whoever links them).
+find_package(Eigen3 3.4 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(PNG REQUIRED)
+find_package(meshoptimizer REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(hwy REQUIRED QUIET IMPORTED_TARGET libhwy)
+pkg_check_modules(epoxy REQUIRED QUIET IMPORTED_TARGET epoxy)
+pkg_check_modules(egl REQUIRED QUIET IMPORTED_TARGET egl)
