@@ -1,29 +1,42 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <fascia/motion/motion.h>
 
 namespace fascia {
 
-// Value and time derivative of a Kochanek–Bartels spline through `keys` (sorted by time).
+// Value and time derivative of a spline.
 struct SplineSample {
   double value = 0;
   double rate = 0;  // per second
 };
 
-// A spline made ready: tangents precomputed. Constant before the first and after the last key,
-// or periodic with `period_s` when that is > 0.
+// A Kochanek–Bartels spline through `keys` (sorted by time), made ready: tangents precomputed.
+//
+// Constant before the first and after the last key. There the value rests, so the tangent is zero
+// and the rate has no jump; a negative continuity at an end key opens the corner (-1: the
+// neighbouring segment's full slope).
+//
+// With period_s > 0 it repeats instead and the tangents wrap. A last key one period after the first
+// is the first key again (its tension, continuity and bias do not count); a last key before that is
+// joined to the first by a segment of its own.
 class KeySpline {
  public:
   KeySpline() = default;
   KeySpline(std::vector<Key> keys, double period_s);
-  SplineSample at(double time_s) const;
+  SplineSample at(double time_s) const;  // a time that is not finite reads as the first key's
 
  private:
-  std::vector<Key> keys_;
-  std::vector<double> out_, in_;  // per key: outgoing and incoming tangent, per second
+  struct Knot {
+    double time_s, value;
+    double in, out;  // tangents arriving and leaving, per second
+  };
+  static SplineSample between(const Knot& a, const Knot& b, double time_s);
+
+  std::vector<Knot> knots_;  // periodic: ends with the first knot again, a period later
   double period_s_ = 0;
 };
 
@@ -35,7 +48,6 @@ struct BoundClip {
   };
   struct SolidTrack {
     int solid, parameter;  // SolidId and its parameter index
-    bool ornament = false;
     KeySpline spline;
   };
   std::string name;

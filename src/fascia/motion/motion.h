@@ -20,16 +20,23 @@ struct Key {
 struct TrackDef {
   enum class Target { joint, solid };
   Target target = Target::joint;
-  std::string name;     // of the joint or solid
-  std::string channel;  // "tx"…"rz", or the parameter's name, e.g. "radius_m"
-  std::vector<Key> keys;
+  std::string name;       // of the joint or solid
+  std::string channel;    // "tx"…"rz", or the parameter's name, e.g. "radius_m"
+  std::vector<Key> keys;  // times increase; at least one
 };
 
 struct MotionDef {
   std::string name;
-  double duration_s = 0;  // 0 = the last key's time
-  bool loop = false;      // the last key's posture equals the first's; tangents wrap
+  double duration_s = 0;  // [0, 1e6]; 0 = the last key's time
+  bool loop = false;      // repeats every duration; tangents wrap. See KeySpline.
   std::vector<TrackDef> tracks;
 };
+
+// The duration that a motion plays for: its own, or the last key's time.
+double playedDuration_s(const MotionDef& motion);
+
+// Reports everything that is wrong with a motion by itself; whether its joints and solids exist is
+// for bindMotion (flesh/bind.h) to say. Pointers start with `pointer`, e.g. "/motions/0".
+void validateMotion(const MotionDef& motion, const std::string& pointer, Diagnostics& diagnostics);
 
 }  // namespace fascia

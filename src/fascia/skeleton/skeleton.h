@@ -13,22 +13,24 @@
 namespace fascia {
 
 enum class Dof { tx, ty, tz, rx, ry, rz };
-inline constexpr bool isRotation(Dof dof) { return dof >= Dof::rx; }
-std::string_view name(Dof dof);                       // "tx" … "rz"
+inline constexpr bool isRotation(Dof dof) {
+  return dof >= Dof::rx;
+}
+std::string_view name(Dof dof);  // "tx" … "rz"
 std::optional<Dof> dofFromName(std::string_view text);
 
 struct DofDef {
   Dof dof = Dof::rx;
-  double min = -1e9, max = 1e9;  // metre or radian
-  double rest = 0;               // value in the rest posture, within [min, max]
+  double min = -1e9, max = 1e9;  // metre or radian, [-1e9, 1e9]
+  double rest = 0;               // value in the rest posture, within [min, max] and [-1e6, 1e6]
 };
 
 // A joint's frame in its parent's: translate by offset, turn by orientation, then by its own
 // degrees of freedom: translation (tx,ty,tz), then Rz·Ry·Rx.
 struct JointDef {
-  std::string name;
-  std::string parent;  // empty = the root; parents come before children
-  Vec3 offset_m = Vec3::Zero();
+  std::string name;    // unique
+  std::string parent;  // empty = the root; parents come before children, and there is one root
+  Vec3 offset_m = Vec3::Zero();         // each within [-1e6, 1e6]
   Vec3 orientation_rad = Vec3::Zero();  // intrinsic Rz·Ry·Rx
   std::vector<DofDef> dofs;             // any subset of the six
 };
@@ -53,29 +55,34 @@ struct PosedSkeleton {
 class Skeleton {
  public:
   Skeleton() = default;
-  // Reports every fault of `def` to `diagnostics` (pointers start with `pointer`, e.g.
-  // "/skeleton/joints/3/parent"); with errors the result must not be used.
+  // Reports every fault of `def` to `diagnostics`; with errors the result must not be used.
+  // `pointer` leads to the array of joints: "/skeleton" gives "/skeleton/3/parent".
   Skeleton(const SkeletonDef& def, const std::string& pointer, Diagnostics& diagnostics);
 
   std::size_t jointCount() const { return joints_.size(); }
   std::size_t valueCount() const { return valueDofs_.size(); }
   const JointDef& joint(JointId id) const { return joints_[id.index()]; }
   JointId parent(JointId id) const { return parents_[id.index()]; }
-  JointId find(std::string_view name) const;                // invalid if there is none
-  int valueIndex(JointId joint, Dof dof) const;             // -1 if the joint lacks it
+  JointId find(std::string_view name) const;     // invalid if there is none
+  int valueIndex(JointId joint, Dof dof) const;  // -1 if the joint lacks it
   const DofDef& valueDof(int index) const { return valueDofs_[static_cast<std::size_t>(index)]; }
   JointId valueJoint(int index) const { return valueJoints_[static_cast<std::size_t>(index)]; }
 
   Posture restPosture() const;
-  void clampToLimits(Posture& posture) const;  // a clamped value's rate becomes 0
+  // A clamped value's rate becomes 0; a value that is not a number goes to rest.
+  void clampToLimits(Posture& posture) const;
 
-  // Forward kinematics with velocities. `out` is resized on first use, then reused.
+  // Forward kinematics with velocities. `posture` has valueCount() values and rates.
+  // `out` is resized on first use, then reused.
   void pose(const Posture& posture, PosedSkeleton& out) const;
 
  private:
+  struct Local;  // a joint's frame and velocity in its rest frame
+  Local local(std::size_t joint, const Posture& posture) const;
+
   std::vector<JointDef> joints_;
   std::vector<JointId> parents_;
-  std::vector<int> firstValue_;  // joint -> its first value
+  std::vector<int> firstValue_;  // joint -> its first value; one more entry than joints
   std::vector<DofDef> valueDofs_;
   std::vector<JointId> valueJoints_;
   std::vector<Transform> restFrames_;  // offset and orientation in the parent's frame

@@ -1,0 +1,149 @@
+#include <fascia/skeleton/skeleton_validation.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string_view>
+
+#include <fascia/base/suggest.h>
+
+namespace fascia {
+namespace {
+
+constexpr double kLargestNumber = 1e6;  // no metre or radian of a figure is larger
+constexpr double kWidestLimit = 1e9;    // stands for "no limit"
+
+using JointIndices = std::map<std::string_view, std::size_t>;
+
+bool within(double number, double bound) {
+  return number >= -bound && number <= bound;  // false for NaN
+}
+
+bool within(const Vec3& v, double bound) {
+  return within(v.x(), bound) && within(v.y(), bound) && within(v.z(), bound);
+}
+
+void validateDof(const DofDef& def, const std::string& pointer, Diagnostics& diagnostics) {
+  if (!within(def.min, kWidestLimit) || !within(def.max, kWidestLimit)) {
+    diagnostics.error(pointer, "limits: found [" + shortNumber(def.min) + ", " +
+                                   shortNumber(def.max) + "], expected finite numbers");
+  } else if (def.min > def.max) {
+    diagnostics.error(pointer, "limits: the minimum " + shortNumber(def.min) +
+                                   " is above the maximum " + shortNumber(def.max));
+  } else if (!within(def.rest, kLargestNumber)) {
+    diagnostics.error(
+        pointer, "rest: found " + shortNumber(def.rest) + ", expected a number in [-1e6, 1e6]");
+  } else if (def.rest < def.min || def.rest > def.max) {
+    diagnostics.error(pointer, "rest: " + shortNumber(def.rest) + " lies outside the limits [" +
+                                   shortNumber(def.min) + ", " + shortNumber(def.max) + "]");
+  }
+}
+
+void validateJoint(const JointDef& joint, const std::string& pointer, Diagnostics& diagnostics) {
+  if (!within(joint.offset_m, kLargestNumber)) {
+    diagnostics.error(pointer + "/offset_m", "expected finite numbers in [-1e6, 1e6]");
+  }
+  if (!within(joint.orientation_rad, kLargestNumber)) {
+    diagnostics.error(pointer + "/orientation_deg", "expected finite numbers in [-1e6, 1e6]");
+  }
+  std::array<bool, 6> seen{};
+  for (const DofDef& dof : joint.dofs) {
+    const std::string dofPointer = pointer + "/dofs/" + std::string(name(dof.dof));
+    bool& known = seen[static_cast<std::size_t>(dof.dof)];
+    if (known) diagnostics.error(dofPointer, "the same degree of freedom twice");
+    known = true;
+    validateDof(dof, dofPointer, diagnostics);
+  }
+}
+
+// Every joint by its name; the first of several.
+JointIndices indexNames(const SkeletonDef& def, const std::string& pointer,
+                        Diagnostics& diagnostics) {
+  JointIndices indices;
+  for (std::size_t i = 0; i < def.joints.size(); ++i) {
+    const std::string& name = def.joints[i].name;
+    const std::string namePointer = pointer + "/" + std::to_string(i) + "/name";
+    if (name.empty()) {
+      diagnostics.error(namePointer, "a joint needs a name");
+      continue;
+    }
+    const auto [first, fresh] = indices.try_emplace(name, i);
+    if (!fresh) {
+      diagnostics.error(namePointer, "a second joint named " + quoted(name),
+                        "the first is joint " + std::to_string(first->second));
+    }
+  }
+  return indices;
+}
+
+// "a → b → a", or empty if the chain of parents above `start` ends. At most kMostJoints steps.
+std::string cycleThrough(const SkeletonDef& def, const JointIndices& indices, std::size_t start) {
+  std::string path = quoted(def.joints[start].name);
+  std::size_t at = start;
+  for (std::size_t steps = 0; steps < def.joints.size(); ++steps) {
+    const auto parent = indices.find(def.joints[at].parent);
+    if (parent == indices.end()) return {};
+    at = parent->second;
+    if (steps < 8) path += " → " + quoted(def.joints[at].name);
+    if (at == start) return steps < 8 ? path : path + " → …";
+  }
+  return {};  // runs into a cycle that `start` is not part of: reported there
+}
+
+void validateParent(const SkeletonDef& def, const JointIndices& indices, std::size_t i,
+                    const std::string& pointer, Diagnostics& diagnostics) {
+  const JointDef& joint = def.joints[i];
+  const auto parent = indices.find(joint.parent);
+  if (parent == indices.end()) {
+    NearestName nearest(joint.parent);
+    for (const auto& [known, index] : indices) nearest.offer(known);
+    diagnostics.error(pointer, "unknown joint " + quoted(joint.parent), nearest.hint());
+  } else if (parent->second >= i) {
+    const std::string cycle = cycleThrough(def, indices, i);
+    if (!cycle.empty()) {
+      diagnostics.error(pointer, "the parents run in a circle: " + cycle);
+    } else {
+      diagnostics.error(pointer, "the parent " + quoted(joint.parent) + " comes later",
+                        "list parents before their children");
+    }
+  }
+}
+
+void validateTree(const SkeletonDef& def, const JointIndices& indices, const std::string& pointer,
+                  Diagnostics& diagnostics) {
+  std::string root;
+  bool rooted = false;
+  for (std::size_t i = 0; i < def.joints.size(); ++i) {
+    const std::string parentPointer = pointer + "/" + std::to_string(i) + "/parent";
+    if (!def.joints[i].parent.empty()) {
+      validateParent(def, indices, i, parentPointer, diagnostics);
+    } else if (rooted) {
+      // A forgotten parent must not quietly tear the figure in two.
+      diagnostics.error(parentPointer,
+                        "a second root: " + quoted(def.joints[i].name) + " has no parent",
+                        "a skeleton has one root; should the parent be " + quoted(root) + "?");
+    } else {
+      rooted = true;
+      root = def.joints[i].name;
+    }
+  }
+  if (!rooted) diagnostics.error(pointer, "no joint without a parent", "a skeleton needs a root");
+}
+
+}  // namespace
+
+void validateSkeleton(const SkeletonDef& def, const std::string& pointer,
+                      Diagnostics& diagnostics) {
+  if (def.joints.empty() || def.joints.size() > kMostJoints) {
+    diagnostics.error(pointer, "found " + std::to_string(def.joints.size()) +
+                                   " joints, expected 1 to " + std::to_string(kMostJoints));
+    return;
+  }
+  const JointIndices indices = indexNames(def, pointer, diagnostics);
+  validateTree(def, indices, pointer, diagnostics);
+  for (std::size_t i = 0; i < def.joints.size(); ++i) {
+    validateJoint(def.joints[i], pointer + "/" + std::to_string(i), diagnostics);
+  }
+}
+
+}  // namespace fascia
