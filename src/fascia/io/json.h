@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fascia/base/error.h>
+
+namespace fascia {
+
+// A JSON value that remembers the line it was read from. Numbers keep their digits as text, so that
+// nothing is lost on the way; members keep their order.
+class Json {
+ public:
+  struct Member;
+  using List = std::vector<Json>;
+  using Object = std::vector<Member>;
+  struct Number {
+    std::string digits;
+  };
+  enum class Kind { null, boolean, number, text, list, object };
+
+  Json() = default;
+  Json(bool value) : value_(value) {}                           // NOLINT: values convert
+  Json(double value);                                           // NOLINT; shortest digits
+  Json(int value) : value_(Number{std::to_string(value)}) {}    // NOLINT
+  Json(Number value) : value_(std::move(value)) {}              // NOLINT
+  Json(std::string value) : value_(std::move(value)) {}         // NOLINT
+  Json(std::string_view value) : value_(std::string(value)) {}  // NOLINT
+  Json(const char* value) : value_(std::string(value)) {}       // NOLINT
+  Json(List value) : value_(std::move(value)) {}                // NOLINT
+  Json(Object value) : value_(std::move(value)) {}              // NOLINT
+
+  Kind kind() const { return static_cast<Kind>(value_.index()); }
+  bool is(Kind k) const { return kind() == k; }
+  int line() const { return line_; }
+  void setLine(int line) { line_ = line; }
+
+  // Only for the matching kind.
+  bool boolean() const { return std::get<bool>(value_); }
+  const std::string& digits() const { return std::get<Number>(value_).digits; }
+  double number() const;
+  const std::string& text() const { return std::get<std::string>(value_); }
+  const List& list() const { return std::get<List>(value_); }
+  List& list() { return std::get<List>(value_); }
+  const Object& object() const { return std::get<Object>(value_); }
+  Object& object() { return std::get<Object>(value_); }
+
+  const Json* find(std::string_view key) const;  // nullptr: no object, or no such member
+  void set(std::string key, Json value);         // appends a member; the key must be new
+
+ private:
+  std::variant<std::monostate, bool, Number, std::string, List, Object> value_;
+  int line_ = 0;
+};
+
+struct Json::Member {
+  std::string key;
+  Json value;
+};
+
+// What a stranger's file may cost us: beyond these it is refused.
+struct JsonLimits {
+  std::size_t bytes = 64u << 20;   // of text
+  std::size_t values = 2'000'000;  // ~50 bytes each in memory; per-point data are texts, not values
+  int depth = 32;                  // our deepest is 7; readers recurse this deep
+};
+
+// Strict JSON (RFC 8259): no comments, no duplicate keys, nothing after the value, valid UTF-8.
+// Reports to `diagnostics` with lines; the result is usable only if it stayed ok.
+Json parseJson(std::string_view text, const JsonLimits& limits, std::vector<Issue>& issues);
+
+// Indented by two; lists of plain values and small objects on one line of at most 100 characters
+// (lists of numbers always on one line). Ends with a newline.
+std::string printJson(const Json& value);
+
+// Shortest digits that read back to the same bits. Throws Error for NaN and infinities, which JSON
+// cannot hold.
+std::string shortestDigits(double value);
+std::string shortestDigits(float value);
+
+std::string jsonText(std::string_view text);          // quoted and escaped as JSON wants it
+std::string escapedPointerKey(std::string_view key);  // "a/b" -> "a~1b" (RFC 6901)
+
+// Finds places in a parsed file, so that faults found later (while building) get a line too.
+class LineIndex {
+ public:
+  LineIndex() = default;
+  LineIndex(Json root, std::string file)
+      : root_(std::make_shared<const Json>(std::move(root))), file_(std::move(file)) {}
+
+  // The line of the place or of its nearest ancestor in the file. Parts of the pointer that name
+  // our structures but not the file's ("/flesh/solids/2", "…_rad") are matched to the file's.
+  Location locate(std::string_view pointer) const;
+  // The same issues with file, line and the file's own pointers.
+  std::vector<Issue> locate(std::vector<Issue> issues) const;
+  const std::string& file() const { return file_; }
+
+ private:
+  std::shared_ptr<const Json> root_;
+  std::string file_;
+};
+
+}  // namespace fascia

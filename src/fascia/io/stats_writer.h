@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include <fascia/character/recording.h>
+
+namespace fascia {
+
+// How a bake went, as JSON text: vertices, simulated_s, wall_s, realtime_ratio, steps,
+// rejected_steps, step_min_s, step_max_s, share_forces, share_constraints, share_other,
+// max_penetration_m, max_edge_stretch, peak_memory_bytes, state_hash, …
+std::string statsJson(const Recording& recording);
+void writeStats(const Recording& recording, const std::string& path);
+
+}  // namespace fascia
