@@ -77,6 +77,7 @@ class Solid {
   std::size_t parameterCount() const { return values_.size(); }
   int parameterIndex(std::string_view path) const;  // -1 if there is none
   const ParameterInfo& parameterInfo(int index) const { return *infos_[static_cast<std::size_t>(index)]; }
+  const std::string& parameterPath(int index) const { return paths_[static_cast<std::size_t>(index)]; }
   double parameter(int index) const { return values_[static_cast<std::size_t>(index)]; }
   void setParameter(int index, double value);  // clamped to its range; NaN is ignored
 
