@@ -31,6 +31,8 @@ Error::Error(Issue issue) : Error(std::vector<Issue>{std::move(issue)}) {}
 Error::Error(std::vector<Issue> issues)
     : std::runtime_error(joined(issues)), issues_(std::move(issues)) {}
 
+Error::Error(const std::string& message) : Error(Issue{{}, message, {}}) {}
+
 void Diagnostics::error(std::string pointer, std::string message, std::string hint) {
   errors_.push_back({{{}, 0, std::move(pointer)}, std::move(message), std::move(hint)});
 }

@@ -28,7 +28,7 @@ class Error : public std::runtime_error {
  public:
   explicit Error(Issue issue);
   explicit Error(std::vector<Issue> issues);  // at least one
-  explicit Error(const std::string& message) : Error(Issue{{}, message, {}}) {}
+  explicit Error(const std::string& message);
 
   const std::vector<Issue>& issues() const { return issues_; }
 

@@ -1,0 +1,69 @@
+#include <fascia/math/ode/integrator.h>
+
+namespace fascia {
+namespace {
+
+// Leapfrog-Verlet 2(1) with velocity-dependent forces (Turner & Gobbetti 1998, eqs. 7a–7h, after
+// Mathiowetz). Their (7f) prints h/2 · a, which is of first order only; it has to be h · a.
+class Verlet final : public Integrator {
+ public:
+  std::string_view name() const override { return "verlet"; }
+  int order() const override { return 2; }
+  int embeddedOrder() const override { return 1; }
+
+  double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
+    const std::size_t n = system.size();
+    to.resize(n), position_force_.assign(n, 0.0);
+    to.t_s = from.t_s + h;
+    for (std::size_t i = 0; i < n; ++i) to.r[i] = from.r[i] + 0.5 * h * from.v[i];
+    system.addPositionForces(from.t_s + 0.5 * h, to.r, position_force_);
+
+    if (!system.hasVelocityForces()) {
+      kick(system.inverseMass(), position_force_, from, h, to);
+    } else if (!iterateVelocity(system, from, h, to)) {
+      return kStepFailed;
+    }
+    for (std::size_t i = 0; i < n; ++i) to.r[i] += 0.5 * h * to.v[i];
+
+    // Embedded Euler r + h v (eq. 9) differs from r⁺ by h/2 (v − v⁺).
+    return scaledNorm(from.r, settings_.position_scale,
+                      [&](std::size_t i) { return 0.5 * h * (to.v[i] - from.v[i]); });
+  }
+
+ private:
+  // v⁺ = v + h M⁻¹ f
+  static void kick(std::span<const double> w, std::span<const double> force, const OdeState& from,
+                   double h, OdeState& to) {
+    for (std::size_t i = 0; i < force.size(); ++i)
+      to.v[i] = w[i] > 0 ? from.v[i] + h * w[i] * force[i] : from.v[i];
+  }
+
+  // Fixed point of (7c)–(7g). r½ stays, so only velocity forces are computed anew.
+  bool iterateVelocity(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) {
+    const std::size_t n = system.size();
+    force_.resize(n), mid_velocity_.resize(n), old_velocity_.resize(n);
+    std::ranges::copy(from.v, to.v.begin());
+    for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
+      for (std::size_t i = 0; i < n; ++i) mid_velocity_[i] = 0.5 * (to.v[i] + from.v[i]);
+      std::ranges::copy(position_force_, force_.begin());
+      system.addVelocityForces(from.t_s + 0.5 * h, to.r, mid_velocity_, force_);
+      old_velocity_.swap(to.v);
+      kick(system.inverseMass(), force_, from, h, to);
+      const double change = scaledNorm(from.v, settings_.velocity_scale,
+                                       [&](std::size_t i) { return to.v[i] - old_velocity_[i]; });
+      // A NaN ends it too: the caller sees it in the result, and where it is.
+      if (!(change > settings_.velocity_tolerance)) return true;
+    }
+    return false;
+  }
+
+  std::vector<double> position_force_, force_, mid_velocity_, old_velocity_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> makeVerlet() {
+  return std::make_unique<Verlet>();
+}
+
+}  // namespace fascia
