@@ -25,8 +25,7 @@ class Field {
   // The same for a batch: reads and writes materials.count entries of each array.
   virtual void worldFromMaterials(SolidId solid, ConstVectors materials, Vectors world) const {
     for (std::size_t i = 0; i < materials.count; ++i) {
-      const Vec3 p =
-          worldFromMaterial(solid, Vec3(materials.x[i], materials.y[i], materials.z[i]));
+      const Vec3 p = worldFromMaterial(solid, Vec3(materials.x[i], materials.y[i], materials.z[i]));
       world.x[i] = static_cast<float>(p.x());
       world.y[i] = static_cast<float>(p.y());
       world.z[i] = static_cast<float>(p.z());
