@@ -8,48 +8,13 @@
 
 #include <fascia/base/aligned.h>
 #include <fascia/base/error.h>
+#include <fascia/field/deformation.h>
+#include <fascia/field/kernels.h>
+#include <fascia/field/shape.h>
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/math/types.h>
 
 namespace fascia {
-
-// One tunable number of a shape or deformation.
-struct ParameterInfo {
-  std::string_view name;  // with its unit: "radius_m", "exponent_e1", "angle_rad"
-  double standard;        // value if the file gives none
-  double min, max;        // closed range
-  std::string_view help;
-};
-
-// A primitive around its own origin, along its z axis where it has one (superquadrics: Barr 1981).
-// Parameters come as a span in the order of parameters().
-class Shape {
- public:
-  virtual ~Shape() = default;
-  virtual std::string_view name() const = 0;  // as in files: "sphere"
-  virtual std::span<const ParameterInfo> parameters() const = 0;
-  virtual double volume_m3(std::span<const double> p) const = 0;  // closed form
-  // Half sizes along x, y, z: a material point is a local point divided by these, so that an anchor
-  // stays on the surface while the parameters change.
-  virtual Vec3 halfExtents_m(std::span<const double> p) const = 0;
-  // Signed distance estimate (m, negative inside) and outward unit normal at local points.
-  virtual void evaluate(std::span<const double> p, ConstVectors points, float* distance_m,
-                        Vectors normal) const = 0;
-  // The surface as a closed mesh for display and export; `detail` = segments around.
-  virtual TriangleMesh tessellate(std::span<const double> p, int detail) const = 0;
-};
-
-// A global deformation of space along the local z axis (Barr 1984), exactly invertible.
-class Deformation {
- public:
-  virtual ~Deformation() = default;
-  virtual std::string_view name() const = 0;  // "taper", "twist", "bend"
-  virtual std::span<const ParameterInfo> parameters() const = 0;
-  // zRange_m: the z interval of the undeformed shape; deformations are parametrised over it.
-  virtual Vec3 forward(std::span<const double> p, double zHalf_m, const Vec3& x) const = 0;
-  virtual Vec3 inverse(std::span<const double> p, double zHalf_m, const Vec3& x) const = 0;
-  virtual Mat3 jacobian(std::span<const double> p, double zHalf_m, const Vec3& x) const = 0;
-};
 
 std::span<const Shape* const> shapes();              // every shape that files may name
 std::span<const Deformation* const> deformations();  // every deformation
@@ -65,45 +30,92 @@ struct SolidDef {
   };
   std::string shape = "sphere";
   std::vector<double> parameters;  // in the order of Shape::parameters(); missing = standard
-  std::vector<Step> deformations;
+  std::vector<Step> deformations;  // at most kMaxDeformations
 };
 
 // A SolidDef made ready: all parameters present in one flat array that keys and drivers write.
+// Copying from a solid of the same definition allocates nothing.
 class Solid {
  public:
-  Solid() = default;
+  Solid() = default;  // empty: evaluate as the unit sphere, no parameters
   Solid(const SolidDef& def, const std::string& pointer, Diagnostics& diagnostics);
 
   std::size_t parameterCount() const { return values_.size(); }
   int parameterIndex(std::string_view path) const;  // -1 if there is none
-  const ParameterInfo& parameterInfo(int index) const { return *infos_[static_cast<std::size_t>(index)]; }
-  const std::string& parameterPath(int index) const { return paths_[static_cast<std::size_t>(index)]; }
+  const ParameterInfo& parameterInfo(int index) const {
+    return *layout_->infos[static_cast<std::size_t>(index)];
+  }
+  const std::string& parameterPath(int index) const {
+    return layout_->paths[static_cast<std::size_t>(index)];
+  }
   double parameter(int index) const { return values_[static_cast<std::size_t>(index)]; }
   void setParameter(int index, double value);  // clamped to its range; NaN is ignored
 
-  const Shape& shape() const { return *shape_; }
-  bool deformed() const { return !steps_.empty(); }
-  Box bounds() const;            // local, encloses the deformed surface
-  double volume_m3() const;      // closed form; with deformations: of the tessellation
+  const Shape& shape() const { return *layout_->shape; }
+  bool deformed() const { return !layout_->steps.empty(); }
+  const Box& bounds() const { return bounds_; }          // local, encloses the deformed surface
+  Vec3 halfExtents_m() const { return halfExtents_m_; }  // of the undeformed shape
+  double volume_m3() const;  // closed form; with deformations: of the tessellation
   TriangleMesh tessellate(int detail) const;
 
   // Signed distance estimate (m, negative inside) and outward unit normal at local points, batch.
-  // Error bound: see field/distance.md of the tests: stated per shape near the surface.
+  // Never exceeds the true signed distance of an undeformed shape. Error for |d| up to a quarter
+  // (a tenth) of the smallest half size, relative to that limit, half sizes within 1 : 4:
+  //   sphere, capsule     exact (float rounding: 1e-6 of the largest half size)
+  //   ellipsoid           0.3 % (0.03 %)
+  //   superellipsoid      exponents in [0.5, 1.25]: 8 % (1 %);  [0.2, 2]: 20 % (4 %)
+  //   deformed            first order in d: see tests/field/distance_test.cpp
+  // p − d n lies on the surface up to that error, and not inside.
   void evaluate(ConstVectors points_local, float* distance_m, Vectors normal_local) const;
 
-  Vec3 materialFromLocal(const Vec3& local) const;  // undo deformations, divide by half extents
+  // Coordinates that follow the matter while parameters change. Undo the deformations; then the
+  // shape's surface is mapped to the unit sphere and its inside to the unit ball, along rays.
+  Vec3 materialFromLocal(const Vec3& local) const;
   Vec3 localFromMaterial(const Vec3& material) const;
+  Vec3 deformedFromShape(const Vec3& x) const;    // all the deformations, in order
+  Vec3 shapeFromDeformed(const Vec3& x) const;    // the exact inverse
+  Mat3 deformationJacobian(const Vec3& x) const;  // of deformedFromShape
+
+  const SolidKernel& kernel() const { return kernel_; }
 
  private:
   struct Step {
     const Deformation* type;
     std::size_t first, count;  // its slice of values_
   };
-  const Shape* shape_ = nullptr;
-  std::vector<Step> steps_;
+  // What no parameter changes; shared by all copies.
+  struct Layout {
+    const Shape* shape = shapes().front();
+    std::vector<Step> steps;
+    std::vector<const ParameterInfo*> infos;
+    std::vector<std::string> paths;
+    std::size_t shapeCount = 0;  // the shape's parameters come first
+  };
+
+  void readShape(const SolidDef& def, const std::string& pointer, Diagnostics& diagnostics,
+                 Layout& layout);
+  void readStep(const SolidDef::Step& step, const std::string& pointer, Diagnostics& diagnostics,
+                Layout& layout);
+  void addParameters(std::span<const ParameterInfo> infos, std::span<const double> given,
+                     const std::string& prefix, const std::string& pointer,
+                     Diagnostics& diagnostics, Layout& layout);
+  std::span<const double> shapeParameters() const { return {values_.data(), layout_->shapeCount}; }
+  std::span<const double> stepParameters(const Step& s) const {
+    return {effective_.data() + s.first, s.count};
+  }
+  void refresh();  // all that depends on values_
+
+  std::shared_ptr<const Layout> layout_ = std::make_shared<Layout>();
   std::vector<double> values_;
-  std::vector<const ParameterInfo*> infos_;
-  std::vector<std::string> paths_;
+  std::vector<double> effective_;  // values_ with amounts held to where the map is one-to-one
+  SolidKernel kernel_;
+  Vec3 halfExtents_m_ = Vec3::Ones();
+  Box bounds_{-Vec3::Ones(), Vec3::Ones()};
 };
+
+// Distance and normal of a solid that stands in the world: transform, evaluate and turn the normals
+// in one pass over the points. Arrays need no alignment; outputs must not overlap the inputs.
+void evaluatePosed(const Solid& solid, const Transform& world, ConstVectors points_world,
+                   float* distance_m, Vectors normal_world);
 
 }  // namespace fascia
