@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include <fascia/math/ode/adaptive_stepper.h>
+
+#include "ode_systems.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+// Counts what the whole program allocates.
+void* operator new(std::size_t bytes) {
+  ++allocations;
+  if (void* p = std::malloc(bytes > 0 ? bytes : 1)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+
+namespace fascia {
+namespace {
+
+TEST(AdaptiveStepper, AllocatesNothingAfterWarmUpWithExplicitMethods) {
+  for (const char* name : {"euler", "symplectic-euler", "verlet", "rk2", "rk4"}) {
+    test::SpringChain chain(20, 400, 0.5, MatrixKind::general);
+    AdaptiveStepper stepper(makeIntegrator(name), {});
+    OdeState state = chain.start();
+    stepper.advance(chain, state, 0.1);
+    const long before = allocations;
+    const auto steps_before = stepper.stats().steps;
+    stepper.advance(chain, state, 0.3);
+    EXPECT_EQ(allocations - before, 0) << name;
+    EXPECT_GT(stepper.stats().steps, steps_before + 5) << name;
+  }
+}
+
+TEST(AdaptiveStepper, AllocatesNothingAfterWarmUpInContactAndRepair) {
+  test::FallingBall ball;
+  StepperOptions options;
+  options.correction_limit_m = 1e-4;
+  AdaptiveStepper stepper(makeIntegrator("verlet"), options);
+  OdeState state{0, {1}, {0}};
+  stepper.advance(ball, state, 0.5);  // has touched the floor
+  state.r[0] = 1;
+  const long before = allocations;
+  const auto contacts_before = stepper.stats().rejected_contact;
+  stepper.advance(ball, state, 1.5);
+  state.v[0] = HUGE_VAL;
+  stepper.advance(ball, state, 1.6);
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(stepper.stats().rejected_contact, contacts_before);
+  EXPECT_GT(stepper.stats().repaired_coordinates, 0);
+}
+
+}  // namespace
+}  // namespace fascia
