@@ -1,0 +1,57 @@
+#include <fascia/render/gl/frame.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace fascia::gl {
+namespace {
+
+Eigen::Vector3f turned(const Vec3& direction, double azimuth_rad) {
+  const double c = std::cos(azimuth_rad), s = std::sin(azimuth_rad);
+  const Vec3 d = direction.normalized();
+  return Vec3(c * d.x() + s * d.z(), d.y(), c * d.z() - s * d.x()).cast<float>();
+}
+
+float largestScatter(const Scene& scene) {
+  float scatter_m = 0;
+  for (const Drawable& drawable : scene.drawables)
+    if (drawable.material.kind == Material::Kind::skin)
+      scatter_m = std::max(scatter_m, drawable.material.scatter_m);
+  return scatter_m;
+}
+
+}  // namespace
+
+Frame prepareFrame(const Scene& scene, int width, int height) {
+  Frame frame;
+  frame.scene = &scene;
+  frame.width = width, frame.height = height;
+  frame.subject = worldBounds(scene);
+  if (frame.subject.empty()) frame.subject = {Vec3::Constant(-0.5), Vec3::Constant(0.5)};
+  const double radius_m = std::max(0.5 * frame.subject.size().norm(), 1e-4);
+  frame.subjectRadius_m = static_cast<float>(radius_m);
+
+  const Camera& camera = scene.camera;
+  const double reach_m = (camera.eye_m - frame.subject.center()).norm();
+  // The floor reaches ten radii out and its near part may lie between the eye and the subject.
+  const double near_m =
+      camera.near_m > 0 ? camera.near_m : std::max(0.05 * reach_m, 0.01 * radius_m);
+  const double far_m = camera.far_m > near_m ? camera.far_m : near_m + reach_m + 25 * radius_m;
+  const double aspect = static_cast<double>(width) / height;
+  frame.viewFromWorld = fascia::viewFromWorld(camera);
+  frame.worldFromView = frame.viewFromWorld.inverse();
+  frame.clipFromWorld = clipFromView(camera, aspect, near_m, far_m) * frame.viewFromWorld;
+  const double tanY = std::tan(0.5 * camera.vertical_fov_rad);
+  frame.tanHalfFov = Vec2(tanY * aspect, tanY).cast<float>();
+
+  const Studio& studio = scene.studio;
+  frame.keyDirection = turned(studio.key.direction, studio.azimuth_rad);
+  frame.fillDirection = turned(studio.fill.direction, studio.azimuth_rad);
+  frame.rimDirection = turned(studio.rim.direction, studio.azimuth_rad);
+  frame.thicknessScale_m = std::max(2 * largestScatter(scene), 0.01f * frame.subjectRadius_m);
+  return frame;
+}
+
+}  // namespace fascia::gl

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include <fascia/render/gl/gpu_mesh.h>
+#include <fascia/render/scene.h>
+
+namespace fascia::gl {
+
+struct DrawItem {
+  const Drawable* drawable;
+  const GpuMesh* mesh;
+  GLuint texture;  // 0 = none
+  Eigen::Matrix4f worldFromObject;
+
+  const Material& material() const { return drawable->material; }
+  bool seeThrough() const { return material().opacity < 1; }
+  // A see-through skin must not darken the flesh that it is to show.
+  bool casts() const {
+    return material().kind != Material::Kind::ground &&
+           !(material().kind == Material::Kind::skin && seeThrough());
+  }
+};
+
+// One picture's scene, made ready for the passes.
+struct Frame {
+  const Scene* scene = nullptr;
+  int width = 0, height = 0;
+  Box subject;  // everything but the ground
+  float subjectRadius_m = 1;
+  Eigen::Matrix4f viewFromWorld, worldFromView, clipFromWorld;
+  Eigen::Vector2f tanHalfFov;
+  Eigen::Vector3f keyDirection, fillDirection, rimDirection;  // world, unit, towards the light
+  float thicknessScale_m = 0.1f;  // thickness that the occlusion pass resolves
+  std::vector<DrawItem> items;
+};
+
+Frame prepareFrame(const Scene& scene, int width, int height);  // items are left empty
+
+}  // namespace fascia::gl

@@ -1,0 +1,87 @@
+#include <fascia/render/renderer.h>
+
+#include <algorithm>
+#include <vector>
+
+#include <fascia/base/error.h>
+#include <fascia/render/gl/beauty_pass.h>
+#include <fascia/render/gl/texture_cache.h>
+#include <fascia/render/gl_context.h>
+
+namespace fascia {
+namespace {
+
+void requireDrawable(const Scene& scene, int width, int height) {
+  const bool sized = width >= 1 && height >= 1 && width <= Renderer::kMaxSide &&
+                     height <= Renderer::kMaxSide &&
+                     static_cast<long long>(width) * height <= Renderer::kMaxPixels;
+  if (!sized) {
+    Issue issue;
+    issue.message = "render: found a size of " + std::to_string(width) + "x" +
+                    std::to_string(height) + ", expected 1 to " +
+                    std::to_string(Renderer::kMaxSide) + " on a side and at most " +
+                    std::to_string(Renderer::kMaxPixels) + " pixels";
+    issue.hint = "1280x720 and 1920x1080 are common";
+    throw Error(issue);
+  }
+  const Camera& c = scene.camera;
+  const bool seeing = c.eye_m.allFinite() && c.target_m.allFinite() && c.up.allFinite() &&
+                      (c.eye_m - c.target_m).cross(c.up).norm() > 0 && c.vertical_fov_rad > 0 &&
+                      c.vertical_fov_rad < kPi;
+  if (!seeing) throw Error("render: the camera has no direction, no up or no field of view");
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  GlContext context;  // first: everything below needs it until it is gone
+  gl::ShadowPass shadow;
+  gl::OcclusionPass occlusion;
+  gl::BeautyPass beauty;
+  gl::TextureCache textures;
+  std::vector<std::unique_ptr<gl::GpuMesh>> meshes;  // by place in the scene
+
+  ~Impl() { context.makeCurrent(); }
+
+  void uploadItems(const Scene& scene, gl::Frame& frame) {
+    if (meshes.size() > scene.drawables.size()) meshes.resize(scene.drawables.size());
+    while (meshes.size() < scene.drawables.size())
+      meshes.push_back(std::make_unique<gl::GpuMesh>());
+    for (std::size_t i = 0; i < scene.drawables.size(); ++i) {
+      const Drawable& drawable = scene.drawables[i];
+      meshes[i]->update(drawable);
+      Eigen::Matrix4f world = Eigen::Matrix4f::Identity();
+      world.block<3, 3>(0, 0) = drawable.world.rotation.cast<float>();
+      world.block<3, 1>(0, 3) = drawable.world.translation_m.cast<float>();
+      frame.items.push_back(
+          {&drawable, meshes[i].get(), textures.find(drawable.material.texture), world});
+    }
+    textures.dropUnused();
+  }
+};
+
+Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
+Renderer::~Renderer() = default;
+
+Pixels Renderer::render(const Scene& scene, int width, int height) {
+  Pixels pixels;
+  render(scene, width, height, pixels);
+  return pixels;
+}
+
+void Renderer::render(const Scene& scene, int width, int height, Pixels& pixels) {
+  requireDrawable(scene, width, height);
+  impl_->context.makeCurrent();
+  gl::Frame frame = gl::prepareFrame(scene, width, height);
+  impl_->uploadItems(scene, frame);
+  impl_->shadow.draw(frame);
+  impl_->occlusion.draw(frame, impl_->shadow);
+  impl_->beauty.draw(frame, impl_->occlusion);
+  impl_->beauty.read(pixels);
+}
+
+std::string Renderer::description() const {
+  return impl_->context.description();
+}
+
+}  // namespace fascia

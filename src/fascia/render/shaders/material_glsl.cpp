@@ -1,0 +1,117 @@
+#include <fascia/render/shaders/sources.h>
+
+namespace fascia::shaders {
+
+// Each kind of material defines `vec4 shaded(...)`: exposed-to-be linear radiance and opacity.
+const char* const kMaterial = R"(
+in vec3 position_world, normal_world, fibreCoordinate;
+in vec2 textureCoordinate;
+in float curvature_per_m;
+uniform vec3 eye_world, baseColor;  // baseColor is linear
+uniform float roughness, scatter_m, translucency, opacity, thicknessScale_m;
+uniform int textured;
+uniform sampler2D colorTexture, scatterLookup, noiseTexture;
+layout(location = 0) out vec4 result;
+
+vec3 albedo() {
+  return textured == 1 ? baseColor * texture(colorTexture, textureCoordinate).rgb : baseColor;
+}
+
+#ifdef SKIN
+// Light that entered on the far side, after Jimenez et al. (2010): their sum of Gaussians over the
+// thickness, in units of the scatter length.
+vec3 transmitted(vec3 n, float throughness) {
+  float s = -log(max(throughness, 1e-3)) * thicknessScale_m / max(scatter_m, 1e-6);
+  float dd = -s * s;
+  vec3 profile = vec3(0.118, 0.198, 0.0) * exp(dd / 0.187) + vec3(0.113, 0.007, 0.007) * exp(dd / 0.567) +
+                 vec3(0.358, 0.004, 0.0) * exp(dd / 1.99) + vec3(0.078, 0.0, 0.0) * exp(dd / 7.41);
+  return profile * clamp(0.3 - dot(n, keyDirection), 0.0, 1.0);
+}
+
+vec3 radiance(vec3 n, vec3 v, Occlusion o) {
+  float fine = texture(noiseTexture, 9.0 * textureCoordinate).r - 0.5;
+  float coarse = texture(noiseTexture, 1.0 * textureCoordinate).r - 0.5;
+  vec3 a = albedo() * (1.0 + 0.06 * coarse + 0.03 * fine);
+  float rough = clamp(roughness * (1.0 + 0.18 * fine + 0.22 * coarse), 0.05, 1.0);
+  float bend = clamp(abs(curvature_per_m) * scatter_m, 0.0, 1.0);
+  vec3 direct = texture(scatterLookup, vec2(0.5 + 0.5 * dot(n, keyDirection), bend)).rgb;
+  // Red travels farther into a shadow than blue: the penumbra glows.
+  vec3 shadow = pow(vec3(max(o.key, 1e-4)), mix(vec3(1.0), vec3(0.62, 0.92, 1.0), translucency));
+  vec3 light = direct * shadow * keyColor + translucency * transmitted(n, o.throughness) * keyColor;
+  light += ambientLight(n) * colouredOpenness(o.openness, a);
+  // Two specular lobes: a broad one and a thin oily film.
+  vec3 shine = 0.8 * specular(n, v, rough, 0.028, o) + 0.2 * specular(n, v, 0.55 * rough, 0.028, o);
+  return a * light + shine;
+}
+#endif
+
+#ifdef MUSCLE
+float fibreHeight(vec2 at, vec2 dx, vec2 dy) { return textureGrad(noiseTexture, at, dx, dy).r; }
+
+vec3 radiance(vec3 n, vec3 v, Occlusion o) {
+  vec3 f = fibreCoordinate;
+  float round2 = max(dot(f.xy, f.xy), 1e-4);
+  // The angle's derivatives in closed form: finite ones jump where the angle wraps.
+  vec3 fx = dFdx(f), fy = dFdy(f);
+  vec2 scale = vec2(3.0 / 6.2831853, 0.10);
+  vec2 at = vec2(atan(f.y, f.x), f.z) * scale;
+  vec2 dx = vec2((f.x * fx.y - f.y * fx.x) / round2, fx.z) * scale;
+  vec2 dy = vec2((f.x * fy.y - f.y * fy.x) / round2, fy.z) * scale;
+  float h = fibreHeight(at, dx, dy);
+  float hx = fibreHeight(at + dx, dx, dy) - h, hy = fibreHeight(at + dy, dx, dy) - h;
+  float clear = smoothstep(0.02, 0.25, round2);  // fibres meet in a point at the poles
+  n = bumpedNormal(position_world, n, 0.35 * scatter_m * clear * hx, 0.35 * scatter_m * clear * hy);
+  float tendon = smoothstep(0.72, 1.0, abs(f.z) + 0.25 * (h - 0.5) * clear);
+  vec3 a = baseColor * mix(1.0, 0.55 + 0.9 * h, 0.75 * clear);
+  a = mix(a, vec3(0.72, 0.58, 0.50), 0.75 * tendon);
+  float nl = clamp((dot(n, keyDirection) + 0.2) / 1.2, 0.0, 1.0);
+  vec3 light = vec3(nl * o.key) * keyColor + ambientLight(n) * colouredOpenness(o.openness, a);
+  return a * light + specular(n, v, roughness, 0.035, o);
+}
+#endif
+
+#ifdef BONE
+vec3 radiance(vec3 n, vec3 v, Occlusion o) {
+  vec3 a = albedo();
+  vec3 direct = clamp((vec3(dot(n, keyDirection)) + vec3(0.35, 0.25, 0.15)) /
+                      vec3(1.35, 1.25, 1.15), 0.0, 1.0);
+  vec3 light = direct * o.key * keyColor + ambientLight(n) * colouredOpenness(o.openness, a);
+  return a * light + specular(n, v, roughness, 0.04, o);
+}
+#endif
+
+#ifdef PLAIN
+vec3 radiance(vec3 n, vec3 v, Occlusion o) {
+  vec3 a = albedo();
+  vec3 light = max(dot(n, keyDirection), 0.0) * o.key * keyColor +
+               ambientLight(n) * colouredOpenness(o.openness, a);
+  return a * light + specular(n, v, roughness, 0.045, o);
+}
+#endif
+
+#ifdef GROUND
+// The floor is the backdrop with a pool of its own colour in the middle and the shadows on it: it
+// has no horizon, because it ends as the backdrop.
+void main() {
+  float r = length(textureCoordinate);
+  Occlusion o = occlusionHere(position_world);
+  vec3 key = keyColor * max(keyDirection.y, 0.05), room = ambientLight(vec3(0.0, 1.0, 0.0));
+  vec3 shade = (key * o.key + room * o.openness) / (key + room);
+  shade = mix(shade, vec3(1.0), smoothstep(0.45, 0.9, r));
+  vec3 backdrop = backgroundColor(gl_FragCoord.xy / targetSize);
+  float pool = exp(-14.0 * r * r) * (1.0 - smoothstep(0.5, 0.95, r));
+  result = vec4(dither(srgbFromLinear(mix(backdrop, baseColor, 0.8 * pool) * shade)), 1.0);
+}
+#else
+void main() {
+  vec3 n = normalize(gl_FrontFacing ? normal_world : -normal_world);
+  vec3 v = normalize(eye_world - position_world);
+  vec3 c = radiance(n, v, occlusionHere(position_world));
+  float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 2.5);
+  float alpha = opacity < 1.0 ? mix(opacity, 1.0, 0.9 * rim) : 1.0;
+  result = vec4(dither(srgbFromLinear(toneMap(c))), alpha);
+}
+#endif
+)";
+
+}  // namespace fascia::shaders
