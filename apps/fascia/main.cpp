@@ -1,1 +1,56 @@
-int main() { return 0; }
+#include <CLI/CLI.hpp>
+
+#include <new>
+
+#include "commands.h"
+#include "console.h"
+#include "interrupt.h"
+
+namespace {
+
+enum ExitCode { ok = 0, badInput = 1, badUsage = 2 };
+
+constexpr const char* kFooter = R"(
+Examples:
+  fascia check examples/penguin.fascia.json
+  fascia bake examples/penguin.fascia.json -o penguin.glb
+  fascia render examples/penguin.fascia.json -o penguin.mp4
+
+'fascia COMMAND --help' explains a command.
+Exit codes: 0 done, 1 something is wrong with the input, 2 the command line makes no sense.)";
+
+int run(CLI::App& program, fascia::Console& console, int argc, char** argv) {
+  try {
+    program.parse(argc, argv);
+    return ok;
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? ok : badUsage;
+  } catch (const fascia::Interrupted&) {
+    fascia::dieOfInterrupt();
+  } catch (const fascia::Error& error) {
+    console.fail(error);
+  } catch (const std::bad_alloc&) {
+    console.fail(fascia::Error("out of memory"));
+  } catch (const std::exception& error) {
+    console.fail(fascia::Error(error.what()));
+  }
+  return badInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  fascia::watchInterrupts();
+  fascia::Console console;
+  CLI::App program("Layered elastic characters: a skeleton, flesh on it, and a skin that lives.");
+  program.footer(kFooter);
+  program.set_version_flag("--version", "fascia " FASCIA_VERSION);
+  program.require_subcommand(1);
+  program.failure_message(CLI::FailureMessage::simple);
+  fascia::addBake(program, console);
+  fascia::addRender(program, console);
+  fascia::addCheck(program, console);
+  fascia::addInfo(program, console);
+  fascia::addBench(program, console);
+  return run(program, console, argc, argv);
+}

@@ -1,0 +1,14 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace fascia {
+
+class Console;
+
+// One file per benchmark. Each adds one subcommand to `fascia bench`, and is called in bench.cpp.
+void addPaperBench(CLI::App& group, Console& console);
+
+}  // namespace fascia

@@ -1,0 +1,25 @@
+#include "bench/example_files.h"
+
+#include <filesystem>
+
+#include <fascia/base/error.h>
+
+namespace fascia {
+
+namespace fs = std::filesystem;
+
+std::string findExamples() {
+  std::error_code unreadable;
+  const fs::path here = fs::current_path(unreadable);
+  const fs::path program = fs::read_symlink("/proc/self/exe", unreadable);
+  for (const fs::path& start : {here, program.parent_path()})
+    for (fs::path folder = start; !folder.empty(); folder = folder.parent_path()) {
+      for (const char* place : {"examples", "share/fascia/examples"})
+        if (fs::exists(folder / place / "penguin.fascia.json", unreadable))
+          return (folder / place).string();
+      if (folder == folder.parent_path()) break;
+    }
+  throw Error("the example characters were not found; name their folder with --examples");
+}
+
+}  // namespace fascia

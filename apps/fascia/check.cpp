@@ -1,0 +1,44 @@
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include <fascia/io/character_file.h>
+
+#include "commands.h"
+#include "console.h"
+
+namespace fascia {
+namespace {
+
+constexpr const char* kFooter = R"(
+Every fault is listed, a line each, with file, line and the place in the document.
+
+Examples:
+  fascia check examples/penguin.fascia.json
+  fascia check --json mine.fascia.json yours.fascia.json)";
+
+void check(const std::vector<std::string>& paths, const Console& console) {
+  std::vector<Issue> issues;
+  for (const std::string& path : paths) {
+    try {
+      loadCharacter(path);
+      console.say(path + ": ok");
+    } catch (const Error& error) {
+      issues.insert(issues.end(), error.issues().begin(), error.issues().end());
+    }
+  }
+  if (!issues.empty()) throw Error(std::move(issues));
+  console.answer(Json::Object{{"ok", true}, {"issues", Json::List{}}});
+}
+
+}  // namespace
+
+void addCheck(CLI::App& program, Console& console) {
+  CLI::App& command = *program.add_subcommand("check", "Find everything that is wrong with a file");
+  const auto paths = std::make_shared<std::vector<std::string>>();
+  command.add_option("CHARACTER", *paths, "One or more *.fascia.json files")->required();
+  console.addFlags(command);
+  command.footer(kFooter);
+  command.callback([paths, &console] { check(*paths, console); });
+}
+
+}  // namespace fascia

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/base/error.h>
+#include <fascia/io/json.h>
+
+namespace CLI {
+class App;
+}
+
+namespace fascia {
+
+// How a subcommand talks: text for a person, or one JSON document on stdout for a machine.
+// Errors and hints go to stderr either way.
+class Console {
+ public:
+  void addFlags(CLI::App& command);  // --json, --quiet
+
+  void say(const std::string& line) const;   // stdout; not with --json or --quiet
+  void hint(const std::string& line) const;  // stderr; not with --quiet
+  void answer(const Json& document) const;   // stdout; only with --json
+  void fail(const Error& error) const;       // every issue a line on stderr; JSON with --json
+
+  // Whether a moving progress bar makes sense: someone is watching, and wants text.
+  bool showsProgress() const;
+
+ private:
+  bool json_ = false;
+  bool quiet_ = false;
+};
+
+// [{"file", "line", "pointer", "message", "hint"}, …], empty parts left out.
+Json toJson(const std::vector<Issue>& issues);
+
+}  // namespace fascia

@@ -1,0 +1,63 @@
+#include "outputs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fascia/base/hash.h>
+#include <fascia/io/stats_writer.h>
+
+namespace fascia {
+
+namespace fs = std::filesystem;
+
+std::string endingOf(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+std::function<std::string(const std::string&)> endsIn(std::vector<std::string> endings) {
+  return [endings](const std::string& path) -> std::string {
+    if (std::find(endings.begin(), endings.end(), endingOf(path)) != endings.end()) return {};
+    return fmt::format("cannot tell the format of '{}': expected a name that ends in {}", path,
+                       fmt::join(endings, ", "));
+  };
+}
+
+void checkFolders(const std::vector<std::string>& paths) {
+  std::vector<Issue> issues;
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    const fs::path folder = fs::path(path).parent_path();
+    const std::string shown = folder.empty() ? "." : folder.string();
+    std::error_code unreadable;
+    if (fs::is_directory(path, unreadable))
+      issues.push_back({{path, 0, {}}, "is a folder", "name a file"});
+    else if (!fs::is_directory(shown, unreadable))
+      issues.push_back({{path, 0, {}}, "there is no folder '" + shown + "'", "make it first"});
+    else if (access(shown.c_str(), W_OK) != 0)
+      issues.push_back({{path, 0, {}}, "the folder '" + shown + "' cannot be written to", {}});
+  }
+  if (!issues.empty()) throw Error(std::move(issues));
+}
+
+void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
+                     const Console& console) {
+  const double ratio = recording.wall_s > 0 ? recording.simulated_s / recording.wall_s : 0;
+  console.say(
+      fmt::format("{} frames, {} vertices: simulated {:.2f} s in {:.2f} s ({:.0f} × real time)",
+                  recording.frames.size(), recording.skin.positions.size(), recording.simulated_s,
+                  recording.wall_s, ratio));
+  Json::List written;
+  for (const std::string& path : outputs) written.push_back(path);
+  std::vector<Issue> issues;
+  Json stats = parseJson(statsJson(recording), JsonLimits{}, issues);
+  console.answer(Json::Object{{"ok", true}, {"outputs", written}, {"stats", std::move(stats)}});
+}
+
+}  // namespace fascia

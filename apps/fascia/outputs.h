@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fascia/character/recording.h>
+
+#include "console.h"
+
+namespace fascia {
+
+std::string endingOf(const std::string& path);  // ".glb", in lower case
+
+// For CLI11: accepts paths with one of these endings.
+std::function<std::string(const std::string&)> endsIn(std::vector<std::string> endings);
+
+// Throws Error before any long work if a file could not be written where it is wanted. Empty paths
+// are skipped.
+void checkFolders(const std::vector<std::string>& paths);
+
+// A line about the simulation for a person, the whole statistics for a machine.
+void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
+                     const Console& console);
+
+}  // namespace fascia

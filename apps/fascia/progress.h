@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "console.h"
+
+namespace fascia {
+
+// A bar with the time left, on a terminal only; gone when the work is done.
+class Progress {
+ public:
+  Progress(const Console& console, std::string what);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // fraction in [0, 1]. False when the person asked to stop.
+  bool update(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string what_;
+  bool visible_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point drawn_{};
+};
+
+}  // namespace fascia

@@ -1,0 +1,2 @@
+#include "commands.h"
+namespace fascia { void addRender(CLI::App&, Console&) {} }

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include <fascia/character/character.h>
+#include <fascia/character/recording.h>
+
+#include "console.h"
+
+namespace fascia {
+
+// What a person may say about a simulation without touching the character's file.
+struct SimulationOptions {
+  std::string motion;        // name; empty = the character's first
+  double frame_rate_hz = 0;  // 0 = as in the file
+  double duration_s = 0;     // 0 = the motion's
+  std::string integrator;    // empty = as in the file
+  double step_s = -1;        // negative = as in the file
+  std::string grid;          // "COLUMNSxROWS"; empty = as in the file
+  int threads = 0;           // 0 = all the machine has
+
+  void addTo(CLI::App& command);
+  BuildOptions buildOptions() const;
+  RecordOptions recordOptions(const Character& character) const;
+};
+
+struct Size {
+  int width = 0, height = 0;
+};
+// "640x360"; {0, 0} for any other text.
+Size parseSize(const std::string& text);
+// For CLI11: empty, or what is wrong with the text as a size whose sides are in [low, high].
+std::string sizeProblem(const std::string& text, int low, int high);
+
+// The index of the motion to use; -1 = the character has none. Throws for an unknown name.
+int chooseMotion(const Character& character, const std::string& name);
+
+// Simulates with a progress bar. Throws Interrupted on Ctrl-C.
+Recording simulate(const Character& character, RecordOptions options, const Console& console);
+
+}  // namespace fascia
