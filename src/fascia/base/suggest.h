@@ -80,4 +80,12 @@ class NearestName {
   int bestDistance_;
 };
 
+// The hint for a name that is none of `known`; empty if nothing is near.
+template <class Names>
+std::string didYouMean(std::string_view found, const Names& known) {
+  NearestName nearest(found);
+  for (const auto& name : known) nearest.offer(name);
+  return nearest.hint();
+}
+
 }  // namespace fascia

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fascia/field/field.h>
@@ -20,7 +22,7 @@ struct DriverDef {
   std::string parameter;  // path, e.g. "radius_m", "taper.amount"
   std::string joint;
   Dof dof = Dof::rx;
-  std::vector<Point> points;  // increasing jointValue, at least two; constant outside
+  std::vector<Point> points;  // increasing jointValue, two to 1024; constant outside
   Interpolation interpolation = Interpolation::smooth;
 };
 
@@ -30,9 +32,9 @@ struct Color {
 
 // A solid on a joint. Flesh solids shape the skin; ornaments (eyes, beak, claws) are only seen.
 struct FleshSolidDef {
-  std::string name;
+  std::string name;  // unique
   std::string joint;
-  Vec3 position_m = Vec3::Zero();       // in the joint's frame
+  Vec3 position_m = Vec3::Zero();       // in the joint's frame; each within [-1e6, 1e6]
   Vec3 orientation_rad = Vec3::Zero();  // intrinsic Rz·Ry·Rx
   SolidDef solid;
   std::vector<DriverDef> drivers;
@@ -45,65 +47,105 @@ struct FleshDef {
 
 class Flesh;
 
-// The flesh at one moment.
+// The flesh at one moment. Filled by Flesh::pose; a plain value, read-only for any number of
+// threads. Material coordinates: where the matter was in the rest solid, in its own frame (m).
+// While a solid's parameters are at rest they are its local coordinates; when it swells or deforms
+// they follow Solid::materialFromLocal, so that what is on the surface stays on it.
 class PosedFlesh final : public Field {
  public:
-  std::size_t solidCount() const override;
-  Box bounds(SolidId solid) const override;
-  void evaluate(SolidId solid, ConstVectors points, float* distance_m, Vectors normal) const override;
+  std::size_t solidCount() const override { return posed_.size(); }
+  Box bounds(SolidId solid) const override { return posed_[solid.index()].bounds; }
+  void evaluate(SolidId solid, ConstVectors points, float* distance_m,
+                Vectors normal) const override;
   void velocity(SolidId solid, ConstVectors points, Vectors velocity) const override;
   Vec3 materialFromWorld(SolidId solid, const Vec3& world) const override;
   Vec3 worldFromMaterial(SolidId solid, const Vec3& material) const override;
+  void worldFromMaterials(SolidId solid, ConstVectors materials, Vectors world) const override;
 
   const Solid& solid(SolidId id) const { return posed_[id.index()].solid; }
   const Transform& frame(SolidId id) const { return posed_[id.index()].world; }
 
  private:
   friend class Flesh;
+  struct Parameter {
+    double value, rate;  // its unit, and per second
+  };
   struct Posed {
-    Solid solid;              // with the current parameters
+    const Solid* rest = nullptr;        // kept alive by source_
+    Solid solid;                        // with the current parameters
+    std::vector<Parameter> parameters;  // as drivers and tracks want them
+    bool written = false;               // parameters are no longer those of rest
     Transform world;
     Twist twist;
-    Vec3 swellRate = Vec3::Zero();  // d(half extents)/dt over half extents, 1/s
     Box bounds;
+    // Matter has moved along the axes only: local = stretch * material. Otherwise it went through
+    // the shape's and the deformations' own maps.
+    bool stretched = true;
+    Vec3 stretch = Vec3::Ones();
+    // v = v(origin) + gradient (x - origin), 1/s; plus, if it is not a mere stretching that goes
+    // on, the difference of the solid a moment earlier and later. Those two are made when a
+    // parameter is first written: most solids never need them.
+    Mat3 velocityGradient = Mat3::Zero();
+    double behindToAhead_s = 0;  // 0 = none
+    Solid behind, ahead;
   };
+
+  static void write(Posed& posed, int parameter, double value, double rate);
+  static void reset(Posed& posed);
+  static bool apply(Posed& posed);
+  static double differentiate(Posed& posed);
+  static void addSwelling(Posed& posed);
+  static void finish(Posed& posed);
+
   std::vector<Posed> posed_;
+  std::shared_ptr<const void> source_;  // the Flesh::Bound that posed_ was made for
 };
 
 // Constant once built: which solid sits on which joint, and what drives it.
 class Flesh {
  public:
+  enum class Role { muscle, ornament };  // an ornament is rigid: it has no drivers
+
   Flesh() = default;
+  // Reports every fault of `def` to `diagnostics`; with errors the result must not be used.
+  // `pointer` leads to the array of solids: "/solids" gives "/solids/2/joint".
   Flesh(const FleshDef& def, const Skeleton& skeleton, const std::string& pointer,
-        Diagnostics& diagnostics);
+        Diagnostics& diagnostics, Role role = Role::muscle);
 
   std::size_t solidCount() const { return solids_.size(); }
   const FleshSolidDef& def(SolidId id) const { return defs_[id.index()]; }
   SolidId find(std::string_view name) const;  // invalid if there is none
   JointId joint(SolidId id) const { return solids_[id.index()].joint; }
-  const Solid& restSolid(SolidId id) const { return solids_[id.index()].rest; }
+  const Solid& restSolid(SolidId id) const;
 
-  // An animated parameter: overrides the rest value; drivers add nothing to a keyed parameter.
+  // An animated parameter: replaces the rest value and whatever a driver says; the last one of a
+  // parameter counts.
   struct ParameterOverride {
     SolidId solid;
     int parameter;
     double value, rate;  // its unit, and per second
   };
-  // Allocation-free after the first call with the same `out`.
+  // Depends on its arguments only, not on what `out` held. Allocation-free after the first call
+  // with the same `out`.
   void pose(const Posture& posture, const PosedSkeleton& skeleton,
             std::span<const ParameterOverride> overrides, PosedFlesh& out) const;
 
  private:
   struct Driver;
+  struct Bound;
   struct Entry {
     JointId joint;
     Transform inJoint;
-    Solid rest;
     std::size_t firstDriver = 0, driverCount = 0;
   };
+  static void addDrivers(const FleshSolidDef& def, const Solid& solid, const Skeleton& skeleton,
+                         const std::string& pointer, Diagnostics& diagnostics,
+                         std::vector<Driver>& drivers);
+  void prepare(PosedFlesh& out) const;
+
   std::vector<FleshSolidDef> defs_;
   std::vector<Entry> solids_;
-  std::shared_ptr<const std::vector<Driver>> drivers_;
+  std::shared_ptr<const Bound> bound_;  // shared with every PosedFlesh made from it
 };
 
 }  // namespace fascia

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/flesh/flesh.h>
+#include <fascia/motion/clip.h>
+
+namespace fascia {
+
+// Finds the joints and parameters that a motion names. Reports every fault of `motion`, also those
+// of validateMotion; with errors the result must not be used. Ornaments are rigid: they are asked
+// for only to say so. Pointers start with `pointer`, e.g. "/motions/0".
+BoundClip bindMotion(const MotionDef& motion, const Skeleton& skeleton, const Flesh& flesh,
+                     const Flesh& ornaments, const std::string& pointer, Diagnostics& diagnostics);
+
+// The posture at a time: rest where no track says otherwise, within the joints' limits.
+// Allocation-free after the first call with the same `posture`.
+void samplePosture(const BoundClip& clip, const Skeleton& skeleton, double time_s,
+                   Posture& posture);
+
+// The animated solid parameters at a time, for Flesh::pose. Replaces what `overrides` held;
+// allocation-free after the first call with the same `overrides`.
+void sampleParameters(const BoundClip& clip, double time_s,
+                      std::vector<Flesh::ParameterOverride>& overrides);
+
+}  // namespace fascia

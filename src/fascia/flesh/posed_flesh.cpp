@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fascia/field/solid.h>
+#include <fascia/flesh/flesh_bound.h>
+
+namespace fascia {
+namespace {
+
+// How far parameters move, relative to their size, to differentiate localFromMaterial. Smaller
+// loses digits to rounding, larger to curvature; either side of 1e-4 costs less than 1e-7.
+constexpr double kRelativeStep = 1e-4;
+constexpr double kSmallestParameter = 0.01;  // in any unit; keeps the step away from 0
+
+Box boxInWorld(const Box& local, const Transform& world) {
+  const Vec3 center = world.point(local.center());
+  const Vec3 half = world.rotation.cwiseAbs() * (0.5 * local.size());
+  return {center - half, center + half};
+}
+
+Mat3 crossMatrix(const Vec3& w) {
+  Mat3 m;
+  m << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
+  return m;
+}
+
+Vec3 at(ConstVectors v, std::size_t i) {
+  return {v.x[i], v.y[i], v.z[i]};
+}
+
+void set(Vectors v, std::size_t i, const Vec3& value) {
+  v.x[i] = static_cast<float>(value.x());
+  v.y[i] = static_cast<float>(value.y());
+  v.z[i] = static_cast<float>(value.z());
+}
+
+// out = matrix (in - from) + to, in float: subtracting first keeps the digits far from the origin.
+void affine(const Mat3& matrix, const Vec3& from, const Vec3& to, ConstVectors in, Vectors out) {
+  const Eigen::Matrix3f m = matrix.cast<float>();
+  const Eigen::Vector3f f = from.cast<float>(), t = to.cast<float>();
+  const float xx = m(0, 0), xy = m(0, 1), xz = m(0, 2);
+  const float yx = m(1, 0), yy = m(1, 1), yz = m(1, 2);
+  const float zx = m(2, 0), zy = m(2, 1), zz = m(2, 2);
+  for (std::size_t i = 0; i < in.count; ++i) {
+    const float x = in.x[i] - f.x(), y = in.y[i] - f.y(), z = in.z[i] - f.z();
+    out.x[i] = xx * x + xy * y + xz * z + t.x();
+    out.y[i] = yx * x + yy * y + yz * z + t.y();
+    out.z[i] = zx * x + zy * y + zz * z + t.z();
+  }
+}
+
+// Whether two states of one solid differ by a stretching along its axes. True for every
+// superquadric, whose points are products of half sizes and a function of direction and exponents
+// (Barr 1981); a capsule keeps its ends round instead.
+bool differByStretch(const Solid& a, const Solid& b) {
+  const PrimitiveKernel &p = a.kernel().primitive, &q = b.kernel().primitive;
+  return !a.deformed() && p.kind != PrimitiveKernel::Kind::capsule &&
+         p.northSouthPower == q.northSouthPower && p.eastWestPower == q.eastWestPower;
+}
+
+}  // namespace
+
+void PosedFlesh::write(Posed& posed, int parameter, double value, double rate) {
+  posed.parameters[static_cast<std::size_t>(parameter)] = {value, rate};
+  posed.written = true;
+  if (posed.ahead.parameterCount() == 0) posed.ahead = posed.behind = posed.solid;
+}
+
+void PosedFlesh::reset(Posed& posed) {
+  for (std::size_t i = 0; i < posed.parameters.size(); ++i) {
+    posed.parameters[i] = {posed.rest->parameter(static_cast<int>(i)), 0};
+  }
+  posed.written = false;
+}
+
+// Hands the wanted parameters to the solid. Returns whether any of them is changing: not one that
+// is held at the edge of its range.
+bool PosedFlesh::apply(Posed& posed) {
+  bool changing = false;
+  for (std::size_t i = 0; i < posed.parameters.size(); ++i) {
+    auto& [value, rate] = posed.parameters[i];
+    const ParameterInfo& info = posed.solid.parameterInfo(static_cast<int>(i));
+    const bool held = !std::isfinite(value) || !std::isfinite(rate) ||
+                      (value >= info.max && rate > 0) || (value <= info.min && rate < 0);
+    value = std::isnan(value) ? posed.rest->parameter(static_cast<int>(i))
+                              : std::clamp(value, info.min, info.max);
+    rate = held ? 0 : rate;
+    posed.solid.setParameter(static_cast<int>(i), value);
+    changing = changing || rate != 0;
+  }
+  return changing;
+}
+
+// Sets behind and ahead: the solid at parameters p ± τ ṗ, or one of the two at p where the range of
+// a parameter leaves no room. Returns the time between them.
+double PosedFlesh::differentiate(Posed& posed) {
+  double step_s = 1e300, roomBehind_s = 1e300, roomAhead_s = 1e300;
+  for (std::size_t i = 0; i < posed.parameters.size(); ++i) {
+    const auto [p, rate] = posed.parameters[i];
+    if (rate == 0) continue;
+    const ParameterInfo& info = posed.solid.parameterInfo(static_cast<int>(i));
+    const double speed = std::abs(rate);
+    step_s = std::min(step_s, kRelativeStep * std::max(std::abs(p), kSmallestParameter) / speed);
+    roomAhead_s = std::min(roomAhead_s, (rate > 0 ? info.max - p : p - info.min) / speed);
+    roomBehind_s = std::min(roomBehind_s, (rate > 0 ? p - info.min : info.max - p) / speed);
+  }
+  const bool roomBoth = std::min(roomAhead_s, roomBehind_s) >= step_s;
+  const double ahead_s = roomBoth || roomAhead_s >= roomBehind_s ? step_s : 0;
+  const double behind_s = roomBoth || roomAhead_s < roomBehind_s ? step_s : 0;
+  for (std::size_t i = 0; i < posed.parameters.size(); ++i) {
+    const auto [p, rate] = posed.parameters[i];
+    posed.ahead.setParameter(static_cast<int>(i), p + ahead_s * rate);
+    posed.behind.setParameter(static_cast<int>(i), p - behind_s * rate);
+  }
+  return ahead_s + behind_s;
+}
+
+// How the matter moves inside the frame while parameters change.
+void PosedFlesh::addSwelling(Posed& posed) {
+  const double span_s = differentiate(posed);
+  if (!differByStretch(posed.behind, posed.ahead)) {
+    posed.behindToAhead_s = span_s;
+    return;
+  }
+  const Vec3 growth_m = posed.ahead.halfExtents_m() - posed.behind.halfExtents_m();
+  const Vec3 swelling_per_s = growth_m.cwiseQuotient(span_s * posed.solid.halfExtents_m());
+  const Mat3& r = posed.world.rotation;
+  posed.velocityGradient += r * swelling_per_s.asDiagonal() * r.transpose();
+}
+
+// After parameters, frame and twist are set: everything that follows from them.
+void PosedFlesh::finish(Posed& posed) {
+  posed.velocityGradient = crossMatrix(posed.twist.angular_rad_per_s);
+  posed.behindToAhead_s = 0;
+  if (posed.ahead.parameterCount() > 0) {  // was ever written; most solids never are
+    const bool changing = apply(posed);
+    const Vec3 now_m = posed.solid.halfExtents_m(), rest_m = posed.rest->halfExtents_m();
+    posed.stretched = !posed.written || differByStretch(*posed.rest, posed.solid);
+    posed.stretch = now_m.cwiseQuotient(rest_m);
+    if (changing) addSwelling(posed);
+  }
+  posed.bounds = boxInWorld(posed.solid.bounds(), posed.world);
+}
+
+void PosedFlesh::evaluate(SolidId solid, ConstVectors points, float* distance_m,
+                          Vectors normal) const {
+  const Posed& posed = posed_[solid.index()];
+  evaluatePosed(posed.solid, posed.world, points, distance_m, normal);
+}
+
+void PosedFlesh::velocity(SolidId solid, ConstVectors points, Vectors velocity) const {
+  const Posed& posed = posed_[solid.index()];
+  const Twist& twist = posed.twist;
+  affine(posed.velocityGradient, twist.origin_m, twist.linear_m_per_s, points, velocity);
+  if (posed.behindToAhead_s == 0) return;
+  const Transform localFromWorld = posed.world.inverse();
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 matter = posed.solid.materialFromLocal(localFromWorld.point(at(points, i)));
+    const Vec3 moved_m =
+        posed.ahead.localFromMaterial(matter) - posed.behind.localFromMaterial(matter);
+    set(velocity, i, at(velocity, i) + posed.world.vector(moved_m / posed.behindToAhead_s));
+  }
+}
+
+Vec3 PosedFlesh::materialFromWorld(SolidId solid, const Vec3& world) const {
+  const Posed& posed = posed_[solid.index()];
+  const Vec3 local = posed.world.inverse().point(world);
+  if (posed.stretched) return local.cwiseQuotient(posed.stretch);
+  return posed.rest->localFromMaterial(posed.solid.materialFromLocal(local));
+}
+
+Vec3 PosedFlesh::worldFromMaterial(SolidId solid, const Vec3& material) const {
+  const Posed& posed = posed_[solid.index()];
+  if (posed.stretched) return posed.world.point(material.cwiseProduct(posed.stretch));
+  const Vec3 matter = posed.rest->materialFromLocal(material);
+  return posed.world.point(posed.solid.localFromMaterial(matter));
+}
+
+void PosedFlesh::worldFromMaterials(SolidId solid, ConstVectors materials, Vectors world) const {
+  const Posed& posed = posed_[solid.index()];
+  if (!posed.stretched) return Field::worldFromMaterials(solid, materials, world);
+  affine(posed.world.rotation * posed.stretch.asDiagonal(), Vec3::Zero(), posed.world.translation_m,
+         materials, world);
+}
+
+void Flesh::prepare(PosedFlesh& out) const {
+  if (out.source_ == bound_) return;
+  out.posed_.assign(solids_.size(), {});
+  for (std::size_t i = 0; i < solids_.size(); ++i) {
+    PosedFlesh::Posed& posed = out.posed_[i];
+    posed.rest = &bound_->rest[i];
+    posed.solid = *posed.rest;
+    posed.parameters.resize(posed.solid.parameterCount());
+    PosedFlesh::reset(posed);
+  }
+  out.source_ = bound_;
+}
+
+void Flesh::pose(const Posture& posture, const PosedSkeleton& skeleton,
+                 std::span<const ParameterOverride> overrides, PosedFlesh& out) const {
+  prepare(out);
+  for (std::size_t i = 0; i < solids_.size(); ++i) {
+    const Entry& entry = solids_[i];
+    PosedFlesh::Posed& posed = out.posed_[i];
+    const std::size_t joint = entry.joint.index();
+    const Twist& carried = skeleton.twist_world[joint];
+    posed.world = skeleton.joint_world[joint] * entry.inJoint;
+    posed.twist = {carried.at(posed.world.translation_m), carried.angular_rad_per_s,
+                   posed.world.translation_m};
+    if (posed.written) PosedFlesh::reset(posed);
+    for (std::size_t k = entry.firstDriver; k < entry.firstDriver + entry.driverCount; ++k) {
+      const Driver& driver = bound_->drivers[k];
+      const auto value = static_cast<std::size_t>(driver.value);
+      const DriverCurve::Sample sample = driver.curve.at(posture.values[value]);
+      PosedFlesh::write(posed, driver.parameter, sample.parameter,
+                        sample.slope * posture.rates[value]);
+    }
+  }
+  for (const ParameterOverride& o : overrides) {
+    PosedFlesh::write(out.posed_[o.solid.index()], o.parameter, o.value, o.rate);
+  }
+  for (PosedFlesh::Posed& posed : out.posed_) PosedFlesh::finish(posed);
+}
+
+}  // namespace fascia
