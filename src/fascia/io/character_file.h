@@ -29,7 +29,7 @@ Character loadCharacter(const std::string& path, const BuildOptions& options = {
 Character buildCharacter(const CharacterFile& file, const BuildOptions& options = {});
 
 // The file's text. What equals its default is left out; reading it back gives the same definition
-// to the last bit (solid parameters that were left to their standard come back spelled out).
+// to the last bit (solid parameters at their standard value may come back left out).
 // Throws Error if the definition holds NaN or infinities.
 std::string characterText(const CharacterDef& def);
 void writeCharacterFile(const CharacterDef& def, const std::string& path);

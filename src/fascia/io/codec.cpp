@@ -4,7 +4,7 @@ namespace fascia {
 
 std::string JsonPath::text() const {
   if (!parent) return {};
-  return parent->text() + "/" + (isIndex ? std::to_string(index) : escapedPointerKey(key));
+  return parent->text() + '/' + (isIndex ? std::to_string(index) : escapedPointerKey(key));
 }
 
 void Reading::fault(const Json& at, const JsonPath& path, std::string message, std::string hint) {
@@ -25,6 +25,11 @@ bool Reading::expect(const Json& at, Json::Kind kind, const JsonPath& path) {
   return false;
 }
 
+std::string shown(std::string_view text) {
+  constexpr std::size_t kLongest = 80;
+  return text.size() > kLongest ? jsonText(text.substr(0, kLongest)) + "…" : jsonText(text);
+}
+
 std::string described(const Json& value) {
   switch (value.kind()) {
     case Json::Kind::null:
@@ -34,7 +39,7 @@ std::string described(const Json& value) {
     case Json::Kind::number:
       return value.digits().substr(0, 40);
     case Json::Kind::text:
-      return "the text " + quoted(value.text());
+      return "the text " + shown(value.text());
     case Json::Kind::list:
       return "a list of " + std::to_string(value.list().size());
     case Json::Kind::object:

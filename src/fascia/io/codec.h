@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,7 @@ class Reading {
   std::vector<Issue> issues;
 };
 
+std::string shown(std::string_view text);  // quoted, and cut when long, for messages
 std::string described(const Json& value);  // "the number 3", "a list of 2", for messages
 
 template <class T>
@@ -139,8 +141,8 @@ class ObjectCodec : public Codec<T> {
   explicit ObjectCodec(std::string help = {}) : help_(std::move(help)) {}
 
   template <class M>
-  ObjectCodec& field(std::string name, M T::*member, CodecPtr<M> codec, std::string help,
-                     Need need = Need::optional) {
+  ObjectCodec& field(std::string name, M T::*member, std::type_identity_t<CodecPtr<M>> codec,
+                     std::string help, Need need = Need::optional) {
     auto entry = std::make_unique<TypedField<M>>();
     entry->name = std::move(name), entry->help = std::move(help), entry->need = need;
     entry->member = member, entry->codec = std::move(codec);
@@ -158,12 +160,12 @@ class ObjectCodec : public Codec<T> {
         NearestName nearest(member.key);
         for (const auto& entry : fields_) nearest.offer(entry->name);
         offerOthers(json, nearest);
-        reading.fault(member.value, at, "unknown key " + quoted(member.key), nearest.hint());
+        reading.fault(member.value, at, "unknown key " + shown(member.key), nearest.hint());
       }
     }
     for (const auto& entry : fields_) {
       if (entry->need == Need::required && !json.find(entry->name)) {
-        reading.fault(json, path, "the key " + quoted(entry->name) + " is missing", entry->help);
+        reading.fault(json, path, "the key " + shown(entry->name) + " is missing", entry->help);
       }
     }
   }

@@ -1,5 +1,6 @@
 #include <fascia/io/file.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -14,7 +15,10 @@ namespace fascia {
 namespace {
 
 Error fileError(const std::string& path, const std::string& message) {
-  return Error(Issue{{path, 0, {}}, message, {}});
+  Issue issue;
+  issue.where.file = path;
+  issue.message = message;
+  return Error(std::move(issue));
 }
 
 }  // namespace
@@ -43,6 +47,12 @@ std::string readFile(const std::string& path, std::size_t maxBytes) {
       throw fileError(path, "is larger than " + std::to_string(maxBytes) + " bytes");
     }
   }
+}
+
+std::string folderOf(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return {};
+  return slash == 0 ? "/" : path.substr(0, slash);
 }
 
 WholeFile::WholeFile(std::string path) : path_(std::move(path)) {

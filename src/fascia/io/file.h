@@ -11,6 +11,8 @@ namespace fascia {
 // The whole file. Throws Error: missing, a folder or device, unreadable, larger than maxBytes.
 std::string readFile(const std::string& path, std::size_t maxBytes);
 
+std::string folderOf(const std::string& path);  // "a/b.json" -> "a"; empty = the current one
+
 // A file that appears whole or not at all: written under a temporary name beside its place, renamed
 // by commit(), removed if that never comes.
 class WholeFile {

@@ -109,10 +109,12 @@ Location LineIndex::locate(std::string_view pointer) const {
     if (const Json* next = child(*at, part, spelled)) {
       at = next;
       where.line = at->line();
-      where.pointer += "/" + escapedPointerKey(spelled);
+      where.pointer += '/';
+      where.pointer += escapedPointerKey(spelled);
       unmatched.clear();
     } else {
-      unmatched += "/" + escapedPointerKey(spelled);
+      unmatched += '/';
+      unmatched += escapedPointerKey(spelled);
     }
   }
   where.pointer += unmatched;

@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <fascia/base/suggest.h>
 #include <fascia/io/json.h>
 
 namespace fascia {
@@ -64,8 +63,8 @@ class Builder {
   bool key(std::string& name) {
     Level& level = stack_.back();
     if (!level.keys.insert(name).second) {
-      issue("the key " + quoted(name) + " appears twice in one object",
-            pointer() + "/" + escapedPointerKey(name), "remove one of the two");
+      issue("the key " + jsonText(name) + " appears twice in one object",
+            pointer() + '/' + escapedPointerKey(name), "remove one of the two");
     }
     level.key = std::move(name);
     return true;
@@ -143,8 +142,8 @@ class Builder {
     for (const Level& level : stack_) {
       const bool list = level.value.is(Json::Kind::list);
       if (!list && level.key.empty()) break;
-      out +=
-          "/" + (list ? std::to_string(level.value.list().size()) : escapedPointerKey(level.key));
+      out += '/';
+      out += list ? std::to_string(level.value.list().size()) : escapedPointerKey(level.key);
     }
     return out;
   }
@@ -152,8 +151,11 @@ class Builder {
   void issue(std::string message, std::string where, std::string hint) {
     constexpr std::size_t kEnough = 100;  // a person reads no more; a hostile file makes millions
     if (issues_.size() >= kEnough) return;
-    issues_.push_back(
-        {{{}, position_.line, std::move(where)}, std::move(message), std::move(hint)});
+    Issue& added = issues_.emplace_back();
+    added.where.line = position_.line;
+    added.where.pointer = std::move(where);
+    added.message = std::move(message);
+    added.hint = std::move(hint);
   }
 
   const JsonLimits& limits_;
@@ -168,10 +170,8 @@ class Builder {
 
 Json parseJson(std::string_view text, const JsonLimits& limits, std::vector<Issue>& issues) {
   if (text.size() > limits.bytes) {
-    issues.push_back({{},
-                      "found " + std::to_string(text.size()) + " bytes, expected at most " +
-                          std::to_string(limits.bytes),
-                      {}});
+    issues.emplace_back().message = "found " + std::to_string(text.size()) +
+                                    " bytes, expected at most " + std::to_string(limits.bytes);
     return {};
   }
   Position position;

@@ -71,7 +71,7 @@ class EnumCodec final : public Codec<T> {
       nearest.offer(name);
       all += (all.empty() ? "" : ", ") + name;
     }
-    reading.fault(json, path, "found " + quoted(json.text()) + ", expected one of " + all,
+    reading.fault(json, path, "found " + shown(json.text()) + ", expected one of " + all,
                   nearest.hint());
   }
   Json write(const T& value) const override {
