@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include <fascia/character/character_def.h>
 #include <fascia/motion/clip.h>
@@ -26,8 +27,8 @@ class Character {
   const CharacterDef& def() const { return def_; }
   const Skeleton& skeleton() const { return skeleton_; }
   const Flesh& flesh() const { return flesh_; }
-  const Flesh& ornaments() const { return ornaments_; }
-  const Skin* skin() const { return skin_.get(); }  // nullptr: a character without skin
+  const Flesh& ornaments() const { return ornaments_; }  // rigid: seen, but not felt by the skin
+  const Skin* skin() const { return skin_.get(); }       // nullptr: a character without skin
   std::size_t motionCount() const { return clips_.size(); }
   const BoundClip& motion(std::size_t i) const { return clips_[i]; }
   // Index of a motion by name; empty name = the first; -1 = none of that name.
@@ -49,15 +50,22 @@ struct CharacterState {
   PosedFlesh flesh;
   PosedFlesh ornaments;
   SkinState skin;
-  SkinWorkspace workspace;  // scratch memory, not part of the state's meaning
-
-  std::uint64_t hash() const;  // over time, posture and skin
+  // Scratch memory, not part of the state's meaning; a copy starts with none.
+  SkinWorkspace workspace;
+  std::vector<Flesh::ParameterOverride> parameters;
 };
+
+// Over time, posture and skin: equal exactly when the states are.
+std::uint64_t hashOf(const Character& character, const CharacterState& state);
 
 // The state at time 0 of a motion (-1: the rest posture), settled for simulation.settle_s.
 CharacterState initialState(const Character& character, int motion);
 
-// One frame: motion → skeleton → flesh → skin. dt_s in [1e-4, 1/12].
+// The layers below the skin at state.time_s; `moving` = false: velocities 0.
+void poseLayers(const Character& character, int motion, bool moving, CharacterState& state);
+
+// One frame: motion → skeleton → flesh → skin. dt_s > 0; long frames are divided. Never throws,
+// allocates nothing after the first calls.
 void advance(const Character& character, int motion, double dt_s, CharacterState& state,
              SkinStats& stats);
 

@@ -12,17 +12,17 @@
 namespace fascia {
 
 struct SimulationDef {
-  double frame_rate_hz = 60;          // [1, 1000]; frames that a bake writes
-  std::string integrator = "auto";    // "auto" = the default stabilised scheme; or one of
-                                      // euler, implicit-euler, verlet, rk2, rk4, rosenbrock4, xpbd
-  double step_s = 0;                  // [0, 1/12]; fixed step or first guess; 0 = chosen
-  double min_step_s = 1e-5;           // adaptive integrators
+  double frame_rate_hz = 60;        // [1, 1000]; frames that a bake writes
+  std::string integrator = "auto";  // "auto" = the default stabilised scheme; or one of
+                                    // euler, implicit-euler, verlet, rk2, rk4, rosenbrock4, xpbd
+  double step_s = 0;                // [0, 1/12]; fixed step or first guess; 0 = chosen
+  double min_step_s = 1e-5;         // adaptive integrators
   double max_step_s = 0.02;
-  double position_tolerance_m = 1e-3; // ε_r: local error per step of the adaptive integrators
-  double velocity_tolerance = 1e-3;   // ε_v: relative, leapfrog's inner iteration
+  double position_tolerance_m = 1e-3;    // ε_r: local error per step of the adaptive integrators
+  double velocity_tolerance = 1e-3;      // ε_v: relative, leapfrog's inner iteration
   double correction_tolerance_m = 0.01;  // ε_c: a larger non-penetration correction redoes the step
   Vec3 gravity_m_per_s2{0, -9.81, 0};
-  double settle_s = 0.5;              // [0, 60]; simulated before time 0 in the first posture
+  double settle_s = 0.5;  // [0, 60]; simulated before time 0 in the first posture
 };
 
 // What a *.fascia.json holds and a person edits. Plain values; y is up, metres.

@@ -12,13 +12,13 @@ namespace fascia {
 struct Recording {
   struct Frame {
     double time_s = 0;
-    std::vector<double> posture;                   // Posture::values
-    std::vector<Eigen::Vector3f> skin_m;           // vertices in skinSurface order; may be empty
+    std::vector<double> posture;          // Posture::values
+    std::vector<Eigen::Vector3f> skin_m;  // vertices in skinSurface order; may be empty
   };
-  std::string motion;          // its name; empty = the rest posture
+  std::string motion;  // its name; empty = the rest posture
   double frame_rate_hz = 60;
   bool loop = false;
-  TriangleMesh skin;           // topology and uvs; positions = the first frame's
+  TriangleMesh skin;  // topology and uvs; positions = the first frame's
   std::vector<Frame> frames;
   SkinStats stats;
   double wall_s = 0, simulated_s = 0;
@@ -26,10 +26,10 @@ struct Recording {
 };
 
 struct RecordOptions {
-  int motion = -1;             // index; -1 = the rest posture
-  double frame_rate_hz = 0;    // 0 = as in the file
-  double duration_s = 0;       // 0 = the motion's
-  double start_s = 0;          // frames before this are simulated, but not kept
+  int motion = -1;           // index; -1 = the rest posture
+  double frame_rate_hz = 0;  // 0 = as in the file
+  double duration_s = 0;     // 0 = the motion's
+  double start_s = 0;        // frames before this are simulated, but not kept
   // Called after every frame with the fraction done; false stops (recording is then discarded).
   std::function<bool(double)> progress;
 };

@@ -2,42 +2,165 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <fascia/base/aligned.h>
-#include <fascia/field/field.h>
+#include <fascia/base/hash.h>
 #include <fascia/flesh/flesh.h>
 #include <fascia/geometry/triangle_mesh.h>
+#include <fascia/skin/bending.h>
+#include <fascia/skin/elastic_grid.h>
+#include <fascia/skin/flesh_contact.h>
+#include <fascia/skin/grid_layout.h>
+#include <fascia/skin/leapfrog.h>
+#include <fascia/skin/point_model.h>
+#include <fascia/skin/quantities.h>
 #include <fascia/skin/skin_def.h>
+#include <fascia/skin/tissue.h>
 
 namespace fascia {
 
-// Under construction: the skin model, its state and its stage function.
+// How a skin is stepped through time; plain values from the character's simulation settings.
+struct SkinSettings {
+  Vec3 gravity_m_per_s2{0, -9.81, 0};
+  std::string integrator = "auto";  // "auto": stabilised leapfrog; else a name of integrators()
+  double step_s = 0;                // fixed step or first guess; 0 = chosen from the material
+  double min_step_s = 1e-5, max_step_s = 0.02;
+  double position_tolerance_m = 1e-3;
+  double velocity_tolerance = 1e-3;
+  double correction_tolerance_m = 0.01;
+};
+
+// Everything below the skin in the rest posture: what a skin is built around.
+struct SkinBase {
+  const Skeleton& skeleton;
+  const Flesh& flesh;
+  const PosedSkeleton& posedSkeleton;
+  const PosedFlesh& posedFlesh;
+};
+
+// A constant elastic skin on a grid: geometry of rest, material, anchors. Spec L2–L6, L14.
+class Skin {
+ public:
+  // Reports every fault of `def` with pointers below `pointer`; with errors the result must not be
+  // used. Shrink-wraps the flesh unless `def.points` brings a rest shape.
+  Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
+       const std::string& pointer, Diagnostics& diagnostics);
+
+  const GridLayout& layout() const { return layout_; }
+  int columns() const { return layout_.columns; }
+  int rows() const { return layout_.rows; }
+  std::size_t pointCount() const { return layout_.pointCount(); }  // point p = j * columns + i
+  std::size_t storageIndex(std::size_t p) const {
+    const auto columns = static_cast<std::size_t>(layout_.columns);
+    return layout_.at(static_cast<int>(p % columns), static_cast<int>(p / columns));
+  }
+
+  const SkinSettings& settings() const { return settings_; }
+  const ElasticGrid& elastic() const { return elastic_; }
+  const Bending& bending() const { return bending_; }
+  const PointModel& points() const { return points_; }
+  const ContactResponse& contactResponse() const { return contactResponse_; }
+  const TissueAnchors& anchors() const { return anchors_; }    // inner ends of the strands
+  const TissueAnchors& carriers() const { return carriers_; }  // every point, in its solid's matter
+  const VectorArray& restPosition() const { return rest_; }
+  const SkinQuantities& quantities() const { return quantities_; }
+  std::span<const PointBlock> blocks() const { return blocks_; }
+  double defaultStep_s() const { return defaultStep_s_; }
+  double size_m() const { return size_m_; }  // diagonal of the rest shape's box
+
+  // Points fixed to a joint: the two end rows.
+  struct Fixed {
+    std::size_t point;
+    JointId joint;
+    Vec3 position_joint;
+  };
+  const std::vector<Fixed>& fixed() const { return fixed_; }
+
+ private:
+  friend class SkinBuilder;
+  GridLayout layout_;
+  SkinSettings settings_;
+  SkinQuantities quantities_;
+  VectorArray rest_;
+  ElasticGrid elastic_;
+  Bending bending_;
+  PointModel points_;
+  ContactResponse contactResponse_;
+  TissueAnchors anchors_, carriers_;
+  std::vector<Fixed> fixed_;
+  std::vector<PointBlock> blocks_;
+  double defaultStep_s_ = 0, size_m_ = 0;
+};
+
+// What changes over time; a plain value. Arrays are in GridLayout storage order, pads filled.
+struct SkinState {
+  VectorArray position, velocity;  // world, m and m/s
+  PointSurroundings surroundings;  // of the interval that starts now
+  float maxSpeed_m_per_s = 0;      // at the end of the last interval
+  bool ready = false;              // surroundings belong to this state's time
+
+  void addTo(StateHash& hash, const GridLayout& layout) const;
+};
+
 struct SkinStats {
   std::uint64_t steps = 0, rejected_steps = 0;
   double step_min_s = 1e300, step_max_s = 0;
   double forces_s = 0, constraints_s = 0, other_s = 0;  // wall clock spent
-  double max_penetration_m = 0;  // over all frames, after the step
-  double max_edge_stretch = 0;   // length over rest length
-  std::uint64_t repaired_points = 0;  // points that had to be put back (see never-explodes)
+  double max_penetration_m = 0;       // deepest point at the end of any measured frame
+  double max_edge_stretch = 0;        // edge length over rest-shape length
+  std::uint64_t repaired_points = 0;  // points that had to be put back (never-explodes)
 };
 
-struct SkinState {
-  VectorArray position, velocity;  // world, metres and m/s; pointCount entries (without padding)
+// The flesh at any moment of the interval being simulated. The result stays valid until the next
+// call.
+struct SkinPose {
+  const Field* field;
+  std::span<const Transform> joints;
 };
-struct SkinWorkspace {};
-
-class Skin {
+class SkinPoseSource {
  public:
-  int columns() const { return 0; }
-  int rows() const { return 0; }
-  std::size_t pointCount() const { return 0; }  // columns x rows; point (i, j) = j * columns + i
+  virtual ~SkinPoseSource() = default;
+  virtual SkinPose at(double time_s) = 0;
 };
 
-// The surface of a state for display and export: closed tube with its two ends capped. Vertex order
-// and triangles are the same for every frame: first the columns x rows points with a seam column
-// repeated for its uv (columns + 1 per row), then two cap centres.
+class SkinStepper;
+
+// Scratch memory that belongs to one run; copying a state does not need it.
+class SkinWorkspace {
+ public:
+  SkinWorkspace();
+  ~SkinWorkspace();
+  SkinWorkspace(const SkinWorkspace&);  // copies start empty
+  SkinWorkspace& operator=(const SkinWorkspace&);
+  SkinStepper& stepper(const Skin& skin);  // made on first use and for another skin
+
+ private:
+  std::unique_ptr<SkinStepper> stepper_;
+};
+
+// The rest shape carried along by the flesh into a posture: where a simulation starts, and where
+// points go that cannot be simulated (a jump, a broken state). Velocities become 0.
+void carrySkin(const Skin& skin, const SkinPose& pose, SkinState& state);
+
+// Advances from start_s to end_s (at most 1/12 s later). Never fails: see never-explodes in
+// docs/never-explodes.md.
+void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double end_s,
+                 SkinState& state, SkinWorkspace& workspace, SkinStats& stats);
+
+// Adds what a finished frame shows to `stats`: deepest penetration and largest stretch. Measured
+// afresh, outside of the step.
+void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats);
+
+// The same surface at another resolution (spec L18), at any moment of a run.
+SkinState resampled(const Skin& from, const SkinState& state, const Skin& to);
+
+// The surface of a state for display and export: the tube with its ends capped. Vertex order and
+// triangles are the same in every frame: row by row columns + 1 points (the seam column twice for
+// its uv), then the centres of the bottom and the top cap. uv: u around, (0,0) = the top end.
 void skinSurface(const Skin& skin, const SkinState& state, TriangleMesh& mesh);
 
 }  // namespace fascia

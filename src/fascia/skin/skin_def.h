@@ -13,16 +13,16 @@ namespace fascia {
 // they mean the same at every resolution. Ranges are checked by the file reader and the builder.
 
 struct SkinMaterialDef {
-  double density_kg_per_m2 = 4;       // [0.01, 1000]; heavier: more follow-through
-  double stretch_u_N_per_m = 150;     // (0, 1e6], around the tube (u1)
-  double stretch_v_N_per_m = 150;     // (0, 1e6], along the tube (u2)
-  double shear_N_per_m = 60;          // [0, 1e6]
-  double bending_Nm = 0;              // [0, 1e3]; 0 = the paper's pure membrane
-  double drag_Ns_per_m3 = 4;          // [0, 1e5]; the global damping −γ v
-  double prestretch = 1.08;           // [0.5, 3]; > 1: the skin is a taut stocking
-  double max_stretch = 1.6;           // (1, 4]; beyond it the stress no longer grows
-  double friction_per_s = 8;          // [0, 1e4]; rate at which sliding on flesh dies away
-  double restitution = 0;             // [0, 1]; the paper's k_n: bounce off the flesh
+  double density_kg_per_m2 = 4;    // [0.01, 1000]; heavier: more follow-through
+  double stretch_u_N_per_m = 150;  // (0, 1e6], around the tube (u1)
+  double stretch_v_N_per_m = 150;  // (0, 1e6], along the tube (u2)
+  double shear_N_per_m = 60;       // [0, 1e6]
+  double bending_Nm = 0;           // [0, 1e3]; 0 = the paper's pure membrane
+  double drag_Ns_per_m3 = 4;       // [0, 1e5]; the global damping −γ v
+  double prestretch = 1.08;        // [0.5, 3]; > 1: the skin is a taut stocking
+  double max_stretch = 1.4;        // [1.01, 4]; beyond it the stress no longer grows
+  double friction_per_s = 8;       // [0, 1e4]; rate at which sliding on flesh dies away
+  double restitution = 0;          // [0, 1]; the paper's k_n: bounce off the flesh
 };
 
 struct SkinFatDef {
@@ -30,8 +30,8 @@ struct SkinFatDef {
 };
 
 struct SkinTissueDef {
-  double stiffness_N_per_m3 = 4000;  // [0, 1e8]; pull per metre beyond rest, per square metre
-  double damping_Ns_per_m3 = 60;     // [0, 1e6]
+  double stiffness_N_per_m3 = 4000;     // [0, 1e8]; pull per metre beyond rest, per square metre
+  double damping_Ns_per_m3 = 60;        // [0, 1e6]
   std::optional<double> rest_length_m;  // [0, 1]; none = the length at attachment
 };
 
@@ -46,8 +46,17 @@ struct SkinEndDef {
 
 // The named per-point quantities that region edits and brushes change.
 enum class SkinQuantity {
-  density, stretch_u, stretch_v, shear, bending, drag, prestretch, fat, tissue_stiffness,
-  tissue_damping, tissue_rest_length
+  density,
+  stretch_u,
+  stretch_v,
+  shear,
+  bending,
+  drag,
+  prestretch,
+  fat,
+  tissue_stiffness,
+  tissue_damping,
+  tissue_rest_length
 };
 
 // A named part of the skin in material coordinates, and what differs there.
@@ -70,13 +79,13 @@ struct SkinBrushDef {
   SkinQuantity quantity = SkinQuantity::fat;
   Vec3 center_m = Vec3::Zero();  // in `joint`'s frame in the rest posture; acts on nearby points
   std::string joint;
-  double radius_m = 0.1;         // one standard deviation
-  double amount = 0;             // added at the centre; the result never falls below 0
+  double radius_m = 0.1;  // one standard deviation
+  double amount = 0;      // added at the centre; the result never falls below 0
 };
 
 // One end point of a tissue strand, moved by hand.
 struct SkinAnchorDef {
-  double u = 0, v = 0;   // the skin point nearest to these material coordinates
+  double u = 0, v = 0;  // the skin point nearest to these material coordinates
   std::string solid;
   Vec3 position_m = Vec3::Zero();  // in the solid's frame, put onto its surface
 };
@@ -87,8 +96,8 @@ struct SkinPointsDef {
   int columns = 0, rows = 0;
   std::vector<float> density, stretch_u, stretch_v, shear, bending, drag, prestretch, fat,
       tissue_stiffness, tissue_damping, tissue_rest_length;
-  std::vector<int> anchor_solid;                  // -1: no tissue
-  std::vector<std::array<float, 3>> anchor;       // material coordinates on that solid
+  std::vector<int> anchor_solid;                      // -1: no tissue
+  std::vector<std::array<float, 3>> anchor;           // material coordinates on that solid
   std::vector<std::array<float, 3>> rest_position_m;  // world, rest posture
 };
 
@@ -98,7 +107,8 @@ struct SkinDef {
   SkinMaterialDef material;
   SkinFatDef fat;
   SkinTissueDef tissue;
-  std::string texture;                 // PNG or JPEG beside the character file; empty = color
+  double cling = 0.3;  // [0, 1]; shrink-wrap: 0 spans hollows like a stocking, 1 fills every valley
+  std::string texture;  // PNG or JPEG beside the character file; empty = color
   std::array<float, 3> color{0.86f, 0.66f, 0.56f};  // sRGB
   std::vector<SkinRegionDef> regions;
   std::vector<SkinBrushDef> brushes;

@@ -1,0 +1,186 @@
+#include <fascia/character/character.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fascia/flesh/bind.h>
+#include <fascia/math/ode/integrators.h>
+
+namespace fascia {
+namespace {
+
+// The longest piece of a frame that is simulated at once.
+constexpr double kLongestFrame_s = 1.0 / 12;
+
+void checkSimulation(const SimulationDef& s, Diagnostics& diagnostics) {
+  const auto range = [&](const char* key, double value, double low, double high) {
+    if (value >= low && value <= high) return;  // false for NaN
+    diagnostics.error(std::string("/simulation/") + key,
+                      "found " + std::to_string(value) + ", expected a number from " +
+                          std::to_string(low) + " to " + std::to_string(high));
+  };
+  range("frame_rate_hz", s.frame_rate_hz, 1, 1000);
+  range("step_s", s.step_s, 0, kLongestFrame_s);
+  range("min_step_s", s.min_step_s, 1e-9, kLongestFrame_s);
+  range("max_step_s", s.max_step_s, 1e-9, kLongestFrame_s);
+  range("position_tolerance_m", s.position_tolerance_m, 1e-12, 1e3);
+  range("velocity_tolerance", s.velocity_tolerance, 1e-12, 1e3);
+  range("correction_tolerance_m", s.correction_tolerance_m, 1e-9, 1e3);
+  range("settle_s", s.settle_s, 0, 60);
+  for (int a = 0; a < 3; ++a)
+    range(("gravity_m_per_s2/" + std::to_string(a)).c_str(), s.gravity_m_per_s2[a], -1e4, 1e4);
+  if (s.integrator == "auto") return;
+  std::string names = "auto";
+  for (const IntegratorInfo& i : integrators()) {
+    if (i.name == s.integrator) return;
+    names += ", " + std::string(i.name);
+  }
+  diagnostics.error("/simulation/integrator",
+                    "found '" + s.integrator + "', expected one of " + names);
+}
+
+SkinSettings settingsOf(const SimulationDef& s) {
+  return {s.gravity_m_per_s2,
+          s.integrator,
+          s.step_s,
+          s.min_step_s,
+          s.max_step_s,
+          s.position_tolerance_m,
+          s.velocity_tolerance,
+          s.correction_tolerance_m};
+}
+
+// Poses the layers below the skin at any time of a motion, in the state's own memory.
+class MotionPoses final : public SkinPoseSource {
+ public:
+  MotionPoses(const Character& character, int motion, bool moving, CharacterState& state)
+      : character_(character), motion_(motion), moving_(moving), state_(state) {}
+
+  SkinPose at(double time_s) override {
+    const Skeleton& skeleton = character_.skeleton();
+    Posture& posture = state_.posture;
+    if (motion_ >= 0) {
+      const BoundClip& clip = character_.motion(static_cast<std::size_t>(motion_));
+      samplePosture(clip, skeleton, time_s, posture);
+      sampleParameters(clip, time_s, state_.parameters);
+    } else if (posture.values.size() != skeleton.valueCount()) {
+      posture = skeleton.restPosture();
+    }
+    if (!moving_) {
+      std::fill(posture.rates.begin(), posture.rates.end(), 0.0);
+      for (Flesh::ParameterOverride& p : state_.parameters) p.rate = 0;
+    }
+    skeleton.pose(posture, state_.skeleton);
+    character_.flesh().pose(posture, state_.skeleton, state_.parameters, state_.flesh);
+    return {&state_.flesh, state_.skeleton.joint_world};
+  }
+
+ private:
+  const Character& character_;
+  int motion_;
+  bool moving_;
+  CharacterState& state_;
+};
+
+// A posture that stands still: time goes on, the pose does not.
+class FrozenPoses final : public SkinPoseSource {
+ public:
+  explicit FrozenPoses(SkinPose pose) : pose_(pose) {}
+  SkinPose at(double) override { return pose_; }
+
+ private:
+  SkinPose pose_;
+};
+
+}  // namespace
+
+Character::Character(const CharacterDef& def, const BuildOptions& options) : def_(def) {
+  if (!options.integrator.empty()) def_.simulation.integrator = options.integrator;
+  if (options.step_s >= 0) def_.simulation.step_s = options.step_s;
+  if (def_.skin && options.columns > 0) def_.skin->columns = options.columns;
+  if (def_.skin && options.rows > 0) def_.skin->rows = options.rows;
+
+  Diagnostics diagnostics;
+  checkSimulation(def_.simulation, diagnostics);
+  skeleton_ = Skeleton(def_.skeleton, "/skeleton", diagnostics);
+  // Joints are referred to by name everywhere below: without them more messages would mislead.
+  diagnostics.throwIfErrors();
+  flesh_ = Flesh(def_.flesh, skeleton_, "/solids", diagnostics);
+  ornaments_ = Flesh(def_.ornaments, skeleton_, "/ornaments", diagnostics, Flesh::Role::ornament);
+  for (std::size_t i = 0; i < def_.motions.size(); ++i) {
+    const std::string pointer = "/motions/" + std::to_string(i);
+    clips_.push_back(
+        bindMotion(def_.motions[i], skeleton_, flesh_, ornaments_, pointer, diagnostics));
+    for (std::size_t j = 0; j < i; ++j)
+      if (def_.motions[j].name == def_.motions[i].name)
+        diagnostics.error(pointer + "/name", "found '" + def_.motions[i].name + "' a second time",
+                          "give every motion a name of its own");
+  }
+  if (def_.skin && diagnostics.ok()) {
+    PosedSkeleton posedSkeleton;
+    PosedFlesh posedFlesh;
+    const Posture rest = skeleton_.restPosture();
+    skeleton_.pose(rest, posedSkeleton);
+    flesh_.pose(rest, posedSkeleton, {}, posedFlesh);
+    skin_ = std::make_unique<Skin>(*def_.skin, settingsOf(def_.simulation),
+                                   SkinBase{skeleton_, flesh_, posedSkeleton, posedFlesh}, "/skin",
+                                   diagnostics);
+  }
+  diagnostics.throwIfErrors();
+}
+
+int Character::findMotion(std::string_view name) const {
+  if (name.empty()) return clips_.empty() ? -1 : 0;
+  for (std::size_t i = 0; i < clips_.size(); ++i)
+    if (clips_[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+std::uint64_t hashOf(const Character& character, const CharacterState& state) {
+  StateHash hash;
+  hash.add(state.time_s);
+  hash.add(state.posture.values.data(), state.posture.values.size() * sizeof(double));
+  if (character.skin()) state.skin.addTo(hash, character.skin()->layout());
+  return hash.value();
+}
+
+void poseLayers(const Character& character, int motion, bool moving, CharacterState& state) {
+  MotionPoses(character, motion, moving, state).at(state.time_s);
+  character.ornaments().pose(state.posture, state.skeleton, {}, state.ornaments);
+}
+
+CharacterState initialState(const Character& character, int motion) {
+  CharacterState state;
+  poseLayers(character, motion, false, state);
+  if (character.skin()) {
+    const SkinPose pose{&state.flesh, state.skeleton.joint_world};
+    carrySkin(*character.skin(), pose, state.skin);
+    FrozenPoses frozen(pose);
+    SkinStats ignored;
+    const double frame = 1.0 / 60;
+    const int frames = static_cast<int>(std::ceil(character.def().simulation.settle_s / frame));
+    for (int i = 0; i < frames; ++i)
+      advanceSkin(*character.skin(), frozen, i * frame, (i + 1) * frame, state.skin,
+                  state.workspace, ignored);
+  }
+  poseLayers(character, motion, true, state);
+  return state;
+}
+
+void advance(const Character& character, int motion, double dt_s, CharacterState& state,
+             SkinStats& stats) {
+  const double start = state.time_s;
+  state.time_s = start + dt_s;
+  if (!character.skin()) {
+    poseLayers(character, motion, true, state);
+    return;
+  }
+  MotionPoses poses(character, motion, true, state);
+  const int pieces = std::max(1, static_cast<int>(std::ceil(dt_s / kLongestFrame_s - 1e-6)));
+  for (int i = 0; i < pieces; ++i)
+    advanceSkin(*character.skin(), poses, start + dt_s * i / pieces,
+                start + dt_s * (i + 1) / pieces, state.skin, state.workspace, stats);
+  character.ornaments().pose(state.posture, state.skeleton, {}, state.ornaments);
+}
+
+}  // namespace fascia

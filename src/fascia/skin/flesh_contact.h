@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include <fascia/base/aligned.h>
+#include <fascia/field/field.h>
+#include <fascia/skin/point_model.h>
+
+namespace fascia {
+
+// Runs of consecutive points in storage order, the unit in which points are tested against solids.
+struct PointBlock {
+  static constexpr std::size_t kCapacity = 16;  // the widest vector
+  std::size_t first;
+  std::uint32_t count;
+};
+
+// Non-penetration of skin and flesh (spec L10, L11): every point, moved inward by its fat along the
+// skin's normal, stays outside of every solid. Works on blocks of points and knows nothing of how
+// points are connected.
+class FleshContact {
+ public:
+  FleshContact() = default;
+  explicit FleshContact(std::vector<PointBlock> blocks);
+
+  struct Result {
+    float maxCorrection_m = 0;
+    float maxSpeed_m_per_s = 0;
+  };
+
+  // Projects points out of the solids exactly, removes the approaching part of their velocity
+  // relative to the flesh, and writes each point's half space (normal, offset, flesh velocity) for
+  // the steps that follow: the nearest solid within `reach_m`.
+  // Candidate solids come from boxes of blocks against boxes of solids; a point in several solids
+  // is projected in turn until it is outside of all, or kPasses are used up.
+  Result project(const Field& field, const PointModel& points, const VectorArray& skinNormal,
+                 float reach_m, float restitution, VectorArray& position, VectorArray& velocity,
+                 PointSurroundings& around);
+
+  // How deep the deepest point is (m, ≥ 0), measured afresh and without changing anything.
+  float deepest(const Field& field, const PointModel& points, const VectorArray& skinNormal,
+                const VectorArray& position) const;
+
+ private:
+  static constexpr int kPasses = 8;
+  struct Task;
+  std::vector<PointBlock> blocks_;
+  std::vector<Result> results_;
+  std::vector<Box> boxes_;
+  std::vector<std::int32_t> nearbySolids_;  // per task: as many as there are solids
+};
+
+}  // namespace fascia

@@ -1,0 +1,313 @@
+#include <fascia/skin/grid_kernels.h>
+
+#include <algorithm>
+#include <array>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fascia/skin/grid_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace fascia {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+
+struct V3 {
+  V x, y, z;
+};
+HWY_INLINE V3 operator+(V3 a, V3 b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE V3 operator-(V3 a, V3 b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE V3 scaled(V s, V3 a) {
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+HWY_INLINE V3 mulAdd(V s, V3 a, V3 b) {
+  return {hn::MulAdd(s, a.x, b.x), hn::MulAdd(s, a.y, b.y), hn::MulAdd(s, a.z, b.z)};
+}
+HWY_INLINE V dot(V3 a, V3 b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+HWY_INLINE V clampAbs(V t, V limit) {
+  return hn::Max(hn::Neg(limit), hn::Min(t, limit));
+}
+// 1/√a for a > 0: the approximation and one Newton step, within 2 ulp of exact.
+HWY_INLINE V inverseRoot(V a) {
+  const D d;
+  const V r = hn::ApproximateReciprocalSqrt(a);
+  return hn::Mul(r, hn::NegMulAdd(hn::Mul(hn::Mul(a, r), r), hn::Set(d, 0.5f), hn::Set(d, 1.5f)));
+}
+
+struct Pointers {
+  const float *x, *y, *z;
+  HWY_INLINE V3 at(std::size_t k) const {
+    const D d;
+    return {hn::LoadU(d, x + k), hn::LoadU(d, y + k), hn::LoadU(d, z + k)};
+  }
+};
+struct MutablePointers {
+  float *x, *y, *z;
+  HWY_INLINE V3 at(std::size_t k) const { return Pointers{x, y, z}.at(k); }
+  HWY_INLINE void set(std::size_t k, V3 v) const {
+    const D d;
+    hn::StoreU(v.x, d, x + k), hn::StoreU(v.y, d, y + k), hn::StoreU(v.z, d, z + k);
+  }
+};
+inline Pointers pointers(const VectorArray& a) {
+  return {a.x.data(), a.y.data(), a.z.data()};
+}
+inline MutablePointers pointers(VectorArray& a) {
+  return {a.x.data(), a.y.data(), a.z.data()};
+}
+
+// What a row of cells does to its four corners, per column: to the point itself, to its right
+// neighbour, and one row up to the point above and to the one above right. `below` is the sum of
+// what the previous row of cells did to this row.
+struct CellForces {
+  MutablePointers self, right, up, upRight, below;
+  CellForces(float* scratch, std::size_t stride) {
+    MutablePointers* all[] = {&self, &right, &up, &upRight, &below};
+    for (std::size_t q = 0; q < 5; ++q) {
+      float* base = scratch + 3 * q * stride + GridLayout::kPad;
+      *all[q] = {base, base + stride, base + 2 * stride};
+    }
+  }
+  // A force on a right neighbour of the last column lands on the first one.
+  void wrap(int columns) const {
+    for (const MutablePointers& p : {right, upRight})
+      for (float* a : {p.x, p.y, p.z}) a[-1] = a[columns - 1];
+  }
+  HWY_INLINE V3 onPoint(std::size_t i) const {
+    return below.at(i) + (self.at(i) + right.at(i - 1));
+  }
+  HWY_INLINE void passUp(std::size_t i) const { below.set(i, up.at(i) + upRight.at(i - 1)); }
+};
+
+// The cells between a row (coefficients from `c`, positions p from element 0) and the next row n.
+template <bool kHasNext>
+HWY_INLINE void cellRow(const ElasticGrid::Coefficients& c, std::size_t row, int columns,
+                        Pointers p, Pointers n, const CellForces& out) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(columns);
+  const V cap = hn::Set(d, c.cap), quarter = hn::Set(d, 0.25f);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const auto load = [&](const FloatArray& a)
+                          HWY_ATTR { return hn::LoadU(d, a.data() + row + i); };
+    const V3 a = p.at(i);
+    const V3 e1 = p.at(i + 1) - a;
+    const V g1 = load(c.g1);
+    const V t1 = clampAbs(hn::Sub(dot(e1, e1), g1), hn::Mul(cap, g1));
+    const V3 q1 = scaled(hn::Mul(load(c.w1), t1), e1);
+    if constexpr (!kHasNext) {
+      out.self.set(i, q1);
+      out.right.set(i, scaled(hn::Set(d, -1.f), q1));
+    } else {
+      const V3 up = n.at(i);
+      const V3 e2 = up - a, e1Up = n.at(i + 1) - up;
+      const V g2 = load(c.g2);
+      const V t2 = clampAbs(hn::Sub(dot(e2, e2), g2), hn::Mul(cap, g2));
+      const V3 q2 = scaled(hn::Mul(load(c.w2), t2), e2);
+      const V3 s1 = e1 + e1Up;                // 2 s1
+      const V3 s2 = (e2 + e2) + (e1Up - e1);  // 2 s2: e2 + (e2 + e1Up − e1)
+      const V t12 = clampAbs(hn::MulSub(quarter, dot(s1, s2), load(c.g12)), load(c.lim12));
+      const V stress = hn::Mul(quarter, hn::Mul(load(c.w12), t12));
+      const V3 sum = scaled(stress, s1 + s2), difference = scaled(stress, s2 - s1);
+      out.self.set(i, (q1 + q2) + sum);
+      out.right.set(i, scaled(hn::Set(d, -1.f), q1 + difference));
+      out.up.set(i, difference - q2);
+      out.upRight.set(i, scaled(hn::Set(d, -1.f), sum));
+    }
+  }
+}
+
+// Calls apply(j, i, force) for every vector of columns of rows [rowBegin, rowEnd) with the membrane
+// forces on them, and endRow(j) after each row. positionRow(j) gives a row's positions; it may be
+// overwritten by apply, because a row's cells are finished before the row is.
+template <class PositionRow, class Apply, class EndRow>
+HWY_INLINE void forEachForce(const GridLayout& g, const ElasticGrid::Coefficients& c, int rowBegin,
+                             int rowEnd, float* scratch, const PositionRow& positionRow,
+                             const Apply& apply, const EndRow& endRow) {
+  const CellForces cells(scratch, g.stride());
+  const D d;
+  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(g.columns);
+  const V3 zero{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  if (rowBegin > 0) {
+    cellRow<true>(c, g.row(rowBegin - 1), g.columns, positionRow(rowBegin - 1),
+                  positionRow(rowBegin), cells);
+    cells.wrap(g.columns);
+  }
+  for (std::size_t i = 0; i < count; i += lanes)
+    rowBegin > 0 ? cells.passUp(i) : cells.below.set(i, zero);
+  for (int j = rowBegin; j < rowEnd; ++j) {
+    if (j + 1 < g.rows)
+      cellRow<true>(c, g.row(j), g.columns, positionRow(j), positionRow(j + 1), cells);
+    else
+      cellRow<false>(c, g.row(j), g.columns, positionRow(j), positionRow(j), cells);
+    cells.wrap(g.columns);
+    for (std::size_t i = 0; i < count; i += lanes) {
+      apply(j, i, cells.onPoint(i));
+      cells.passUp(i);
+    }
+    endRow(j);
+  }
+}
+
+void gridForcesImpl(const GridLayout& g, const ElasticGrid::Coefficients& c,
+                    const VectorArray& position, VectorArray& force, float* scratch) {
+  const MutablePointers out = pointers(force);
+  const Pointers in = pointers(position);
+  forEachForce(
+      g, c, 0, g.rows, scratch,
+      [&](int j) {
+        return Pointers{in.x + g.row(j), in.y + g.row(j), in.z + g.row(j)};
+      },
+      [&](int j, std::size_t i, V3 f) HWY_ATTR { out.set(g.row(j) + i, f); },
+      [&](int j) {
+        for (float* a : {out.x, out.y, out.z})
+          std::fill(a + g.row(j) + g.columns, a + g.row(j) + g.stride() - GridLayout::kPad, 0.f);
+      });
+}
+
+// Everything that acts on one vector of points besides the membrane, and the time step.
+struct PointStep {
+  const SweepModel& m;
+  float time_s;
+
+  HWY_INLINE void operator()(std::size_t k, V3 force, const MutablePointers& r,
+                             const MutablePointers& v, std::size_t local) const {
+    const D d;
+    const PointModel& p = *m.points;
+    const StepCoefficients& s = *m.step;
+    const PointSurroundings& around = *m.surroundings;
+    const auto load = [&](const FloatArray& a) HWY_ATTR { return hn::LoadU(d, a.data() + k); };
+    const V time = hn::Set(d, time_s), before = hn::Set(d, time_s - s.step_s), zero = hn::Zero(d);
+    V3 position = r.at(local), velocity = v.at(local);
+    if (m.extraForce) force = force + pointers(*m.extraForce).at(k);
+
+    // Tissue, spec L5: pulls only beyond its rest length, along the strand.
+    const V3 anchorVelocity = pointers(around.anchorVelocity).at(k);
+    const V3 strand = position - mulAdd(before, anchorVelocity, pointers(around.anchor).at(k));
+    const V squared = hn::Add(dot(strand, strand), hn::Set(d, 1e-16f));
+    const V inverse = inverseRoot(squared);
+    const V extension = hn::Sub(hn::Mul(squared, inverse), load(p.tissueRestLength));
+    const auto taut = hn::Gt(extension, zero);
+    const V pull =
+        hn::IfThenElseZero(taut, hn::Mul(hn::Mul(load(p.tissueStiffness), extension), inverse));
+    const V closing = hn::IfThenElseZero(
+        taut, hn::Mul(load(s.strandGain),
+                      hn::Mul(dot(velocity - anchorVelocity, strand), hn::Mul(inverse, inverse))));
+
+    const V weight = load(s.weight);
+    const V3 gravity{hn::Set(d, m.gravity[0]), hn::Set(d, m.gravity[1]), hn::Set(d, m.gravity[2])};
+    force = mulAdd(weight, gravity, mulAdd(hn::Neg(pull), strand, force));
+    velocity = mulAdd(load(s.gain), force, scaled(load(s.keep), velocity));
+    velocity = mulAdd(hn::Neg(closing), strand, velocity);
+    position = mulAdd(hn::Set(d, s.step_s), velocity, position);
+
+    // Flesh as a moving half space, spec L10; velocities are relative to the flesh.
+    const V3 normal = pointers(around.normal).at(k);
+    const V3 flesh = pointers(around.fleshVelocity).at(k);
+    const V offset = hn::MulAdd(time, dot(normal, flesh), load(around.offset));
+    const V depth = hn::Min(hn::Sub(dot(normal, position), offset), zero);
+    const auto inside = hn::Lt(depth, zero);
+    if (!hn::AllFalse(d, inside)) {
+      position = mulAdd(hn::Neg(depth), normal, position);
+      const V3 relative = velocity - flesh;
+      const V along = dot(relative, normal);
+      const V bounced =
+          hn::IfThenElse(hn::Lt(along, zero), hn::Mul(hn::Set(d, -s.bounce), along), along);
+      const V3 tangential = scaled(hn::Set(d, s.slide), mulAdd(hn::Neg(along), normal, relative));
+      const V3 after = flesh + mulAdd(bounced, normal, tangential);
+      velocity = {hn::IfThenElse(inside, after.x, velocity.x),
+                  hn::IfThenElse(inside, after.y, velocity.y),
+                  hn::IfThenElse(inside, after.z, velocity.z)};
+    }
+    r.set(local, position);
+    v.set(local, velocity);
+  }
+};
+
+void sweepRowsImpl(const SweepModel& m, const SweepBand& band, int rowBegin, int rowEnd,
+                   float time_s, float* scratch) {
+  const GridLayout& g = *m.layout;
+  const auto local = [&](int j) {
+    return static_cast<std::size_t>(j - band.firstStored) * g.stride() + GridLayout::kPad;
+  };
+  const MutablePointers r{band.position[0], band.position[1], band.position[2]};
+  const MutablePointers v{band.velocity[0], band.velocity[1], band.velocity[2]};
+  const PointStep step{m, time_s};
+  forEachForce(
+      g, *m.elastic, rowBegin, rowEnd, scratch,
+      [&](int j) {
+        return Pointers{r.x + local(j), r.y + local(j), r.z + local(j)};
+      },
+      [&](int j, std::size_t i, V3 f) HWY_ATTR { step(g.row(j) + i, f, r, v, local(j) + i); },
+      [&](int j) {
+        for (float* a : {r.x + local(j), r.y + local(j), r.z + local(j)}) {
+          a[-1] = a[g.columns - 1];
+          a[g.columns] = a[0];
+        }
+      });
+}
+
+void gridNormalsImpl(const GridLayout& g, const VectorArray& position, int rowBegin, int rowEnd,
+                     VectorArray& normal) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(g.columns);
+  const Pointers r = pointers(position);
+  const MutablePointers out = pointers(normal);
+  for (int j = rowBegin; j < rowEnd; ++j) {
+    const std::size_t row = g.row(j), low = g.row(std::max(j - 1, 0));
+    const std::size_t high = g.row(std::min(j + 1, g.rows - 1));
+    for (std::size_t i = 0; i < count; i += lanes) {
+      // Position pads repeat the row's other end also on open grids, where one-sided differences
+      // would be exact; the border of a sheet is pinned or rarely touches anything.
+      const V3 u = r.at(row + i + 1) - r.at(row + i - 1);
+      const V3 w = r.at(high + i) - r.at(low + i);
+      const V3 n{hn::MulSub(u.y, w.z, hn::Mul(u.z, w.y)), hn::MulSub(u.z, w.x, hn::Mul(u.x, w.z)),
+                 hn::MulSub(u.x, w.y, hn::Mul(u.y, w.x))};
+      const V squared = dot(n, n);
+      const V inverse = hn::IfThenElseZero(hn::Gt(squared, hn::Set(d, 1e-30f)),
+                                           inverseRoot(hn::Max(squared, hn::Set(d, 1e-30f))));
+      out.set(row + i, scaled(inverse, n));
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace fascia
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fascia {
+
+HWY_EXPORT(gridForcesImpl);
+HWY_EXPORT(sweepRowsImpl);
+HWY_EXPORT(gridNormalsImpl);
+
+void SweepScratch::resize(const GridLayout& layout) {
+  floats_.assign(15 * layout.stride() + 16, 0.f);
+}
+
+void gridForces(const GridLayout& layout, const ElasticGrid::Coefficients& elastic,
+                const VectorArray& position, VectorArray& force, SweepScratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(gridForcesImpl)(layout, elastic, position, force, scratch.data());
+}
+
+void sweepRows(const SweepModel& model, const SweepBand& band, int rowBegin, int rowEnd,
+               float time_s, SweepScratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(sweepRowsImpl)(model, band, rowBegin, rowEnd, time_s, scratch.data());
+}
+
+void gridNormals(const GridLayout& layout, const VectorArray& position, int rowBegin, int rowEnd,
+                 VectorArray& normal) {
+  HWY_DYNAMIC_DISPATCH(gridNormalsImpl)(layout, position, rowBegin, rowEnd, normal);
+}
+
+}  // namespace fascia
+#endif

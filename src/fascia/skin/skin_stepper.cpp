@@ -1,0 +1,246 @@
+#include <fascia/skin/skin_stepper.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fascia/skin/ode_skin.h>
+
+namespace fascia {
+namespace {
+
+// Longest time over which the flesh near a point is taken as a flat half space moving at constant
+// velocity. Longer saves contact tests; shorter follows curved flesh more closely. At 1/120 s a
+// point sliding 0.5 m/s over a 10 cm sphere leaves it by 0.1 mm.
+constexpr double kInterval_s = 1.0 / 120;
+// A skin point whose anchor jumps farther than this share of the skin's size within one interval
+// has been teleported with the body, not moved.
+constexpr double kJump = 0.2;
+// Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
+constexpr double kFastest_per_s = 60;
+
+using Clock = std::chrono::steady_clock;
+
+class Stopwatch {
+ public:
+  // Books the time since the last call to `account`.
+  void lap(double& account) {
+    const Clock::time_point now = Clock::now();
+    account += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+constexpr FloatArray VectorArray::*kAxes[3] = {&VectorArray::x, &VectorArray::y, &VectorArray::z};
+
+}  // namespace
+
+SkinStepper::SkinStepper(const Skin& skin)
+    : skin_(&skin),
+      stepper_(skin.layout()),
+      contact_({skin.blocks().begin(), skin.blocks().end()}) {
+  for (VectorArray* a : {&normal_, &nextAnchor_, &extraForce_}) a->resize(skin.layout().storage());
+  if (skin.settings().integrator != "auto") ode_ = std::make_unique<OdeSkin>(skin);
+}
+
+SkinStepper::~SkinStepper() = default;
+
+void SkinStepper::advance(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
+                          SkinStats& stats) {
+  if (!state.ready) begin(poses.at(start_s), state);
+  const double span = end_s - start_s;
+  const int intervals = std::max(1, static_cast<int>(std::ceil(span / kInterval_s - 1e-6)));
+  for (int i = 0; i < intervals; ++i)
+    interval(poses, start_s + span * i / intervals, start_s + span * (i + 1) / intervals, state,
+             stats);
+}
+
+// Anchors and half spaces for a state that comes from somewhere else.
+void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
+  const GridLayout& g = skin_->layout();
+  state.velocity.resize(g.storage());
+  state.surroundings.resize(g.storage());
+  skin_->anchors().place(*pose.field, scratch_, state.surroundings.anchor);
+  SkinStats ignored;
+  settle(pose, kInterval_s, state, ignored);
+  state.ready = true;
+}
+
+void SkinStepper::interval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
+                           SkinStats& stats) {
+  Stopwatch watch;
+  const double duration = end_s - start_s;
+  const int steps = ode_ ? 0 : chooseStep(duration);
+  const SkinPose pose = poses.at(end_s);
+  surround(pose, duration, state, stats);
+  watch.lap(stats.other_s);
+  if (ode_) {
+    ode_->advance(poses, start_s, end_s, contact_, state, stats);
+    double bookedBySolver = 0;
+    watch.lap(bookedBySolver);
+    settle(poses.at(end_s), duration, state, stats);
+  } else {
+    leapfrog(steps, state, stats);
+    watch.lap(stats.forces_s);
+    settle(pose, duration, state, stats);
+  }
+  watch.lap(stats.constraints_s);
+}
+
+// Where anchors and fixed points go during the interval.
+void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& state,
+                           SkinStats& stats) {
+  PointSurroundings& around = state.surroundings;
+  skin_->anchors().place(*pose.field, scratch_, nextAnchor_);
+  const auto rate = static_cast<float>(1 / duration_s);
+  const auto jump = static_cast<float>(kJump * skin_->size_m());
+  bool jumped = false;
+  for (const TissueAnchors::Anchor& a : skin_->anchors().anchors()) {
+    const std::size_t k = a.point;
+    float distance = 0;
+    for (const auto axis : kAxes) {
+      const float d = (nextAnchor_.*axis)[k] - (around.anchor.*axis)[k];
+      distance += d * d;
+    }
+    jumped |= !(distance < jump * jump);
+  }
+  if (jumped) {
+    // A posture jump: the skin jumps with the flesh and starts anew from there.
+    carrySkin(*skin_, pose, state);
+    around.anchor = nextAnchor_;
+    for (const auto axis : kAxes) {
+      std::fill((around.normal.*axis).begin(), (around.normal.*axis).end(), 0.f);
+      std::fill((around.anchorVelocity.*axis).begin(), (around.anchorVelocity.*axis).end(), 0.f);
+    }
+    stats.repaired_points += skin_->pointCount();
+  }
+  for (const TissueAnchors::Anchor& a : skin_->anchors().anchors()) {
+    const std::size_t k = a.point;
+    for (const auto axis : kAxes) {
+      float& velocity = (around.anchorVelocity.*axis)[k];
+      const float next = ((nextAnchor_.*axis)[k] - (around.anchor.*axis)[k]) * rate;
+      if (!ode_) (state.velocity.*axis)[k] += coefficients_.carried[k] * (next - velocity);
+      velocity = next;
+    }
+  }
+  for (const Skin::Fixed& f : skin_->fixed()) {
+    const Vec3 target = pose.joints[f.joint.index()].point(f.position_joint);
+    for (int a = 0; a < 3; ++a)
+      (state.velocity.*kAxes[a])[f.point] =
+          (static_cast<float>(target[a]) - (state.position.*kAxes[a])[f.point]) * rate;
+  }
+}
+
+// The number of equal steps for an interval; readies the coefficients for their length.
+int SkinStepper::chooseStep(double duration_s) {
+  const double given = skin_->settings().step_s;
+  const double longest = given > 0 ? given : skin_->defaultStep_s();
+  const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / longest - 1e-6)));
+  const double h = duration_s / steps;
+  // Frame times are rounded sums: only a real change of step is worth new coefficients.
+  if (std::abs(h - coefficients_.step_s) > 1e-6 * h)
+    prepareStep(skin_->points(), skin_->contactResponse(), h, coefficients_);
+  return steps;
+}
+
+void SkinStepper::leapfrog(int steps, SkinState& state, SkinStats& stats) {
+  const bool bends = skin_->bending().active();
+  SweepModel model{&skin_->layout(),
+                   &skin_->elastic().coefficients(),
+                   &skin_->points(),
+                   &coefficients_,
+                   &state.surroundings,
+                   bends ? &extraForce_ : nullptr,
+                   {}};
+  for (int a = 0; a < 3; ++a)
+    model.gravity[a] = static_cast<float>(skin_->settings().gravity_m_per_s2[a]);
+  if (bends) {
+    for (int s = 0; s < steps; ++s) {
+      extraForce_.fill(0.f);
+      skin_->bending().addForces(state.position, extraForce_);
+      stepper_.run(model, s, 1, state.position, state.velocity);
+    }
+  } else {
+    stepper_.run(model, 0, steps, state.position, state.velocity);
+  }
+  const double h = coefficients_.step_s;
+  stats.steps += static_cast<std::uint64_t>(steps);
+  stats.step_min_s = std::min(stats.step_min_s, h);
+  stats.step_max_s = std::max(stats.step_max_s, h);
+}
+
+// Ends an interval: fixed points to their exact places, exact non-penetration, half spaces and
+// anchors for the next one.
+void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& state,
+                         SkinStats& stats) {
+  const GridLayout& g = skin_->layout();
+  repair(pose, state, stats);
+  for (const Skin::Fixed& f : skin_->fixed()) {
+    const Vec3 target = pose.joints[f.joint.index()].point(f.position_joint);
+    for (int a = 0; a < 3; ++a) (state.position.*kAxes[a])[f.point] = static_cast<float>(target[a]);
+  }
+  if (state.ready) std::swap(state.surroundings.anchor, nextAnchor_);
+  fillPads(g, state.position);
+  gridNormals(g, state.position, 0, g.rows, normal_);
+  // Twice the way that the fastest point can go until the next test.
+  const float reach = 2 * state.maxSpeed_m_per_s * static_cast<float>(duration_s) +
+                      0.01f * static_cast<float>(skin_->size_m());
+  state.maxSpeed_m_per_s = contact_
+                               .project(*pose.field, skin_->points(), normal_, reach,
+                                        static_cast<float>(skin_->contactResponse().restitution),
+                                        state.position, state.velocity, state.surroundings)
+                               .maxSpeed_m_per_s;
+  fillPads(g, state.position);
+}
+
+// No state leaves a step with a number that is not finite or a speed that no body has: such points
+// return to where the flesh carries them.
+void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stats) {
+  const auto fastest = static_cast<float>(kFastest_per_s * skin_->size_m());
+  const auto broken = [&](std::size_t k) {
+    float speed = 0, place = 0;
+    for (const auto axis : kAxes) {
+      const float v = (state.velocity.*axis)[k] - (state.surroundings.anchorVelocity.*axis)[k];
+      speed += v * v;
+      place += std::abs((state.position.*axis)[k]);
+    }
+    return !(speed < fastest * fastest && place < 1e9f);
+  };
+  std::vector<std::size_t> points;
+  for (const PointBlock& b : skin_->blocks())
+    for (std::size_t k = b.first; k < b.first + b.count; ++k)
+      if (broken(k)) points.push_back(k);
+  if (points.empty()) return;
+  SkinState carried;
+  carrySkin(*skin_, pose, carried);
+  for (const std::size_t k : points) {
+    for (const auto axis : kAxes) {
+      (state.position.*axis)[k] = (carried.position.*axis)[k];
+      (state.velocity.*axis)[k] = (state.surroundings.anchorVelocity.*axis)[k];
+    }
+  }
+  fillPads(skin_->layout(), state.velocity);
+  stats.repaired_points += points.size();
+}
+
+SkinWorkspace::SkinWorkspace() = default;
+SkinWorkspace::~SkinWorkspace() = default;
+SkinWorkspace::SkinWorkspace(const SkinWorkspace&) {}
+SkinWorkspace& SkinWorkspace::operator=(const SkinWorkspace&) {
+  return *this;
+}
+
+SkinStepper& SkinWorkspace::stepper(const Skin& skin) {
+  if (!stepper_ || &stepper_->skin() != &skin) stepper_ = std::make_unique<SkinStepper>(skin);
+  return *stepper_;
+}
+
+void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double end_s,
+                 SkinState& state, SkinWorkspace& workspace, SkinStats& stats) {
+  workspace.stepper(skin).advance(poses, start_s, end_s, state, stats);
+}
+
+}  // namespace fascia

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <fascia/skin/skin.h>
+
+namespace fascia {
+
+class OdeSkin;
+
+// Steps one skin: the stabilised leapfrog, or any integrator of the solver library.
+class SkinStepper {
+ public:
+  explicit SkinStepper(const Skin& skin);
+  ~SkinStepper();
+
+  const Skin& skin() const { return *skin_; }
+  void advance(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
+               SkinStats& stats);
+
+ private:
+  void begin(const SkinPose& pose, SkinState& state);
+  void interval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
+                SkinStats& stats);
+  int chooseStep(double duration_s);
+  void leapfrog(int steps, SkinState& state, SkinStats& stats);
+  void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
+  void settle(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
+  void repair(const SkinPose& pose, SkinState& state, SkinStats& stats);
+
+  const Skin* skin_;
+  StepCoefficients coefficients_;
+  GridStepper stepper_;
+  FleshContact contact_;
+  VectorArray normal_, nextAnchor_, extraForce_, scratch_;
+  std::unique_ptr<OdeSkin> ode_;
+};
+
+}  // namespace fascia
