@@ -28,6 +28,7 @@ struct Material {
   float scatter_m = 0.01f;    // skin: how far light travels inside; 1 % of the height looks soft
   float translucency = 0.6f;  // skin: [0, 1], light through thin parts
   float opacity = 1;          // [0, 1]; below 1 the rim stays denser, so that the outline reads
+  float xray = 0;             // [0, 1] how strongly it shows through what hides it: bones in flesh
 };
 
 struct Drawable {
@@ -48,7 +49,7 @@ struct DirectionalLight {
 // A photographer's studio: a soft key light with a shadow, a fill, a rim, and the room itself.
 // Directions are turned about y by azimuth_rad, so that the lights can follow the camera's side.
 struct Studio {
-  DirectionalLight key{{0.62, 0.95, 0.72}, {1.0f, 0.955f, 0.89f}, 2.9f};
+  DirectionalLight key{{0.80, 0.92, 0.62}, {1.0f, 0.95f, 0.88f}, 2.7f};
   DirectionalLight fill{{-0.95, 0.35, 0.75}, {0.80f, 0.90f, 1.0f}, 0.55f};
   DirectionalLight rim{{-0.55, 0.55, -1.0}, {0.90f, 0.95f, 1.0f}, 1.5f};
   Rgb sky{0.70f, 0.78f, 0.88f};      // linear radiance from above
@@ -56,7 +57,7 @@ struct Studio {
   Rgb floor{0.36f, 0.33f, 0.30f};    // … from below
   float key_radius_rad = 0.10f;      // half the angle the key light fills: softness of shadows
   float azimuth_rad = 0;
-  float exposure = 0.62f;
+  float exposure = 0.5f;
 };
 
 struct Background {

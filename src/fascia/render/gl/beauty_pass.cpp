@@ -78,12 +78,13 @@ void BeautyPass::resize(int width, int height) {
   glBindRenderbuffer(GL_RENDERBUFFER, color_.id());
   glRenderbufferStorageMultisample(GL_RENDERBUFFER, kSamples, GL_RGBA8, width, height);
   glBindRenderbuffer(GL_RENDERBUFFER, depth_.id());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, kSamples, GL_DEPTH_COMPONENT24, width, height);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, kSamples, GL_DEPTH24_STENCIL8, width, height);
   glBindRenderbuffer(GL_RENDERBUFFER, resolvedColor_.id());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.id());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.id());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
+                            depth_.id());
   requireComplete("an anti-aliased picture");
   glBindFramebuffer(GL_FRAMEBUFFER, resolved_.id());
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
@@ -113,7 +114,8 @@ void BeautyPass::drawBackground(const Frame& frame) {
   glEnable(GL_DEPTH_TEST);
 }
 
-void BeautyPass::drawLit(const Frame& frame, const OcclusionPass& occlusion, const DrawItem& item) {
+void BeautyPass::drawLit(const Frame& frame, const OcclusionPass& occlusion, const DrawItem& item,
+                         bool hidden) {
   Program& program = litProgram(item.material().kind);
   program.use();
   setStudio(program, frame);
@@ -125,8 +127,9 @@ void BeautyPass::drawLit(const Frame& frame, const OcclusionPass& occlusion, con
   program.set("scatterLookup", kLookupUnit);
   program.set("noiseTexture", kNoiseUnit);
   occlusion.bind(program, kGeometryUnit, kOcclusionUnit);
-  program.set("unoccluded",
-              item.casts() || item.material().kind == Material::Kind::ground ? 0.f : 1.f);
+  const bool occluded = item.casts() || item.material().kind == Material::Kind::ground;
+  program.set("unoccluded", occluded && !hidden ? 0.f : 1.f);
+  program.set("ghost", hidden ? std::clamp(item.material().xray, 0.f, 1.f) : 0.f);
   program.set("thicknessScale_m", frame.thicknessScale_m);
   program.set("targetSize",
               Eigen::Vector2f(static_cast<float>(width_), static_cast<float>(height_)));
@@ -148,6 +151,26 @@ void BeautyPass::drawOpaque(const Frame& frame, const OcclusionPass& occlusion) 
     }
 }
 
+// What shows through is blended once per sample, marked in the stencil: overlapping bones would
+// otherwise add up.
+void BeautyPass::drawHidden(const Frame& frame, const OcclusionPass& occlusion) {
+  glEnable(GL_CULL_FACE);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  glEnable(GL_STENCIL_TEST);
+  glStencilFunc(GL_EQUAL, 0, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
+  for (const DrawItem& item : frame.items)
+    if (item.material().xray > 0) drawLit(frame, occlusion, item, true);
+  glDisable(GL_STENCIL_TEST);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+}
+
 void BeautyPass::drawDepth(const Frame& frame, Material::Kind kind) {
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   depthProgram_.use();
@@ -160,8 +183,8 @@ void BeautyPass::drawDepth(const Frame& frame, Material::Kind kind) {
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-// Back faces, then only the nearest front faces, found by a depth pass before: overlapping limbs
-// would otherwise add up in the order in which their triangles happen to come.
+// The skin's back faces, then only the nearest front faces, found by a depth pass before:
+// overlapping limbs would otherwise add up in the order in which their triangles happen to come.
 void BeautyPass::drawSeeThrough(const Frame& frame, const OcclusionPass& occlusion,
                                 Material::Kind kind) {
   const auto isLayer = [kind](const DrawItem& item) {
@@ -171,11 +194,13 @@ void BeautyPass::drawSeeThrough(const Frame& frame, const OcclusionPass& occlusi
   glEnable(GL_CULL_FACE);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  glDepthMask(GL_FALSE);
-  glCullFace(GL_FRONT);
-  for (const DrawItem& item : frame.items)
-    if (isLayer(item)) drawLit(frame, occlusion, item);
-  glDepthMask(GL_TRUE);
+  if (kind == Material::Kind::skin) {  // the far side of a muscle would only hide the bones
+    glDepthMask(GL_FALSE);
+    glCullFace(GL_FRONT);
+    for (const DrawItem& item : frame.items)
+      if (isLayer(item)) drawLit(frame, occlusion, item);
+    glDepthMask(GL_TRUE);
+  }
   glCullFace(GL_BACK);
   drawDepth(frame, kind);
   glDepthFunc(GL_LEQUAL);
@@ -190,9 +215,10 @@ void BeautyPass::draw(const Frame& frame, const OcclusionPass& occlusion) {
   resize(frame.width, frame.height);
   glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
   glViewport(0, 0, width_, height_);
-  glClear(GL_DEPTH_BUFFER_BIT);
+  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   drawBackground(frame);
   drawOpaque(frame, occlusion);
+  drawHidden(frame, occlusion);
   for (const auto kind :
        {Material::Kind::bone, Material::Kind::muscle, Material::Kind::plain, Material::Kind::skin})
     drawSeeThrough(frame, occlusion, kind);

@@ -20,8 +20,10 @@ class BeautyPass {
   void drawBackground(const Frame& frame);
   void drawOpaque(const Frame& frame, const OcclusionPass& occlusion);
   void drawSeeThrough(const Frame& frame, const OcclusionPass& occlusion, Material::Kind kind);
+  void drawHidden(const Frame& frame, const OcclusionPass& occlusion);
   void drawDepth(const Frame& frame, Material::Kind kind);
-  void drawLit(const Frame& frame, const OcclusionPass& occlusion, const DrawItem& item);
+  void drawLit(const Frame& frame, const OcclusionPass& occlusion, const DrawItem& item,
+               bool hidden = false);
   Program& litProgram(Material::Kind kind);
 
   Program backgroundProgram_, depthProgram_;

@@ -2,13 +2,13 @@
 
 namespace fascia::shaders {
 
-// Each kind of material defines `vec4 shaded(...)`: exposed-to-be linear radiance and opacity.
+// Each kind of material but the ground defines the linear radiance towards v at a normal n.
 const char* const kMaterial = R"(
 in vec3 position_world, normal_world, fibreCoordinate;
 in vec2 textureCoordinate;
 in float curvature_per_m;
 uniform vec3 eye_world, baseColor;  // baseColor is linear
-uniform float roughness, scatter_m, translucency, opacity, thicknessScale_m;
+uniform float roughness, scatter_m, translucency, opacity, ghost, thicknessScale_m;
 uniform int textured;
 uniform sampler2D colorTexture, scatterLookup, noiseTexture;
 layout(location = 0) out vec4 result;
@@ -35,9 +35,13 @@ vec3 radiance(vec3 n, vec3 v, Occlusion o) {
   float rough = clamp(roughness * (1.0 + 0.18 * fine + 0.22 * coarse), 0.05, 1.0);
   float bend = clamp(abs(curvature_per_m) * scatter_m, 0.0, 1.0);
   vec3 direct = texture(scatterLookup, vec2(0.5 + 0.5 * dot(n, keyDirection), bend)).rgb;
+  // Blood carries the red; white or dark hides keep the softness without the blush.
+  float warmth = smoothstep(0.15, 0.6, (a.r - a.b) / max(a.r, 0.05));
+  direct = mix(vec3(dot(direct, vec3(0.35, 0.45, 0.2))), direct, 0.15 + 0.85 * warmth);
   // Red travels farther into a shadow than blue: the penumbra glows.
-  vec3 shadow = pow(vec3(max(o.key, 1e-4)), mix(vec3(1.0), vec3(0.62, 0.92, 1.0), translucency));
-  vec3 light = direct * shadow * keyColor + translucency * transmitted(n, o.throughness) * keyColor;
+  vec3 shadow = pow(vec3(max(o.key, 1e-4)), mix(vec3(1.0), vec3(0.62, 0.92, 1.0), translucency * warmth));
+  vec3 light = direct * shadow * keyColor + 
+               warmth * translucency * transmitted(n, o.throughness) * keyColor;
   light += ambientLight(n) * colouredOpenness(o.openness, a);
   // Two specular lobes: a broad one and a thin oily film.
   vec3 shine = 0.8 * specular(n, v, rough, 0.028, o) + 0.2 * specular(n, v, 0.55 * rough, 0.028, o);
@@ -62,7 +66,7 @@ vec3 radiance(vec3 n, vec3 v, Occlusion o) {
   float clear = smoothstep(0.02, 0.25, round2);  // fibres meet in a point at the poles
   n = bumpedNormal(position_world, n, 0.35 * scatter_m * clear * hx, 0.35 * scatter_m * clear * hy);
   float tendon = smoothstep(0.72, 1.0, abs(f.z) + 0.25 * (h - 0.5) * clear);
-  vec3 a = baseColor * mix(1.0, 0.55 + 0.9 * h, 0.75 * clear);
+  vec3 a = baseColor * mix(vec3(0.9), mix(vec3(0.62, 0.42, 0.42), vec3(1.05, 0.95, 0.95), h), clear);
   a = mix(a, vec3(0.72, 0.58, 0.50), 0.75 * tendon);
   float nl = clamp((dot(n, keyDirection) + 0.2) / 1.2, 0.0, 1.0);
   vec3 light = vec3(nl * o.key) * keyColor + ambientLight(n) * colouredOpenness(o.openness, a);
@@ -109,6 +113,7 @@ void main() {
   vec3 c = radiance(n, v, occlusionHere(position_world));
   float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 2.5);
   float alpha = opacity < 1.0 ? mix(opacity, 1.0, 0.9 * rim) : 1.0;
+  if (ghost > 0.0) alpha = ghost * (1.0 - 0.5 * rim);
   result = vec4(dither(srgbFromLinear(toneMap(c))), alpha);
 }
 #endif

@@ -40,15 +40,15 @@ vec3 roomColor(vec3 d) {
   return mix(horizonColor, d.y > 0.0 ? skyColor : floorColor, smoothstep(0.0, 0.6, abs(d.y)));
 }
 
-// A rectangular light panel seen along d; `soft` widens its edges.
+// A rectangular light panel seen along d; `soft` widens its edges. No early return: derivatives
+// need all neighbours.
 float panel(vec3 d, vec3 axis, vec2 halfSize, float soft) {
   float along = dot(d, axis);
-  if (along <= 0.02) return 0.0;
   vec3 side = normalize(cross(vec3(0.0, 1.0, 0.0), axis));
-  vec2 q = abs(vec2(dot(d, side), dot(d, cross(axis, side)))) / along;
-  vec2 edge = vec2(soft) + fwidth(q);
+  vec2 q = abs(vec2(dot(d, side), dot(d, cross(axis, side)))) / max(along, 0.1);
+  vec2 edge = vec2(soft) + min(fwidth(q), vec2(0.2));
   vec2 inside = 1.0 - smoothstep(halfSize - edge, halfSize + edge, q);
-  return inside.x * inside.y;
+  return along > 0.1 ? inside.x * inside.y : 0.0;
 }
 
 // What a mirror of this roughness reflects. Panels dim as they blur, so that they keep their energy.
@@ -67,7 +67,7 @@ vec3 ambientLight(vec3 n) {
   vec3 room = mix(floorColor, skyColor, 0.5 + 0.5 * n.y) * 0.72 + 0.28 * horizonColor;
   float fill = max(0.35 + 0.65 * dot(n, fillDirection), 0.0);
   float rim = max(dot(n, rimDirection), 0.0);
-  return 0.55 * room + fillColor * fill * fill + rimColor * rim * 0.5;
+  return 0.46 * room + fillColor * fill * fill * 0.8 + rimColor * rim * 0.45;
 }
 )";
 

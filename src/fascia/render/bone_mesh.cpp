@@ -1,0 +1,108 @@
+#include <fascia/render/bone_mesh.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fascia {
+namespace {
+
+using Vec3f = Eigen::Vector3f;
+
+constexpr std::uint32_t kSegments = 20;  // around
+constexpr std::uint32_t kRings = 10;     // of a ball, pole to pole
+constexpr double kBallToBone = 0.11;     // a joint ball's radius over the mean bone's length
+
+// A long bone's outline: place along it and radius, both as a share; knob, shaft, knob.
+struct Outline {
+  float along, radius;
+};
+constexpr std::array<Outline, 13> kShaft{{{0.00f, 0.00f},
+                                          {0.00f, 0.55f},
+                                          {0.03f, 0.92f},
+                                          {0.08f, 1.00f},
+                                          {0.14f, 0.84f},
+                                          {0.24f, 0.56f},
+                                          {0.50f, 0.44f},
+                                          {0.76f, 0.50f},
+                                          {0.87f, 0.72f},
+                                          {0.93f, 0.84f},
+                                          {0.97f, 0.76f},
+                                          {1.00f, 0.45f},
+                                          {1.00f, 0.00f}}};
+
+// Adds a surface of revolution about `axis`; each ring has a place on the axis and a radius.
+template <class RingAt>
+void addRevolution(TriangleMesh& mesh, const Vec3f& axis, std::uint32_t rings, RingAt ringAt) {
+  const Vec3f side = axis.unitOrthogonal(), other = axis.cross(side);
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  for (std::uint32_t r = 0; r < rings; ++r) {
+    const auto [center, radius_m] = ringAt(r);
+    for (std::uint32_t s = 0; s < kSegments; ++s) {
+      const float a = static_cast<float>(2 * kPi) * static_cast<float>(s) / kSegments;
+      mesh.positions.push_back(center + radius_m * (std::cos(a) * side + std::sin(a) * other));
+    }
+  }
+  for (std::uint32_t r = 0; r + 1 < rings; ++r)
+    for (std::uint32_t s = 0; s < kSegments; ++s) {
+      const std::uint32_t next = (s + 1) % kSegments;
+      const std::uint32_t a = base + r * kSegments + s, b = base + r * kSegments + next;
+      const std::uint32_t c = a + kSegments, d = b + kSegments;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, c});
+    }
+}
+
+struct Ring {
+  Vec3f center;
+  float radius_m;
+};
+
+void addBall(TriangleMesh& mesh, const Vec3f& center, float radius_m) {
+  const Vec3f axis = Vec3f::UnitY();
+  addRevolution(mesh, axis, kRings + 1, [&](std::uint32_t r) {
+    const float latitude = static_cast<float>(kPi * (static_cast<double>(r) / kRings - 0.5));
+    return Ring{center + std::sin(latitude) * radius_m * axis, std::cos(latitude) * radius_m};
+  });
+}
+
+void addShaft(TriangleMesh& mesh, const Vec3f& from, const Vec3f& to, float maxRadius_m) {
+  const float length_m = (to - from).norm();
+  const Vec3f axis = length_m > 0 ? Vec3f((to - from) / length_m) : Vec3f(Vec3f::UnitY());
+  const float radius_m = std::min(maxRadius_m, 0.16f * length_m);
+  addRevolution(mesh, axis, static_cast<std::uint32_t>(kShaft.size()), [&](std::uint32_t r) {
+    return Ring{from + kShaft[r].along * (to - from), kShaft[r].radius * radius_m};
+  });
+}
+
+// The joints' balls get one size, from the mean bone; a lone joint gets a small one.
+double ballRadius(const Skeleton& skeleton) {
+  double length_m = 0;
+  int bones = 0;
+  for (std::size_t i = 0; i < skeleton.jointCount(); ++i) {
+    const JointId id(static_cast<std::int64_t>(i));
+    if (!skeleton.parent(id).valid()) continue;
+    length_m += skeleton.joint(id).offset_m.norm();
+    ++bones;
+  }
+  return bones > 0 && length_m > 0 ? kBallToBone * length_m / bones : 0.03;
+}
+
+}  // namespace
+
+TriangleMesh boneMesh(const Skeleton& skeleton, const PosedSkeleton& posed) {
+  TriangleMesh mesh;
+  const auto radius_m = static_cast<float>(ballRadius(skeleton));
+  for (std::size_t i = 0; i < skeleton.jointCount(); ++i) {
+    const JointId parent = skeleton.parent(JointId(static_cast<std::int64_t>(i)));
+    const Vec3f here = posed.joint_world[i].translation_m.cast<float>();
+    addBall(mesh, here, radius_m);
+    if (parent.valid())
+      addShaft(mesh, posed.joint_world[parent.index()].translation_m.cast<float>(), here,
+               0.9f * radius_m);
+  }
+  computeNormals(mesh.positions, mesh.triangles, mesh.normals);
+  return mesh;
+}
+
+}  // namespace fascia

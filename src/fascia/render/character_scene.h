@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include <fascia/character/character.h>
+#include <fascia/render/scene.h>
+
+namespace fascia {
+
+struct Layers {
+  bool skeleton = false, muscle = false, skin = true;
+};
+
+// "skin", "skeleton,muscle,skin", "all": any of the three, separated by commas. Throws Error.
+Layers parseLayers(std::string_view text);
+
+struct SceneOptions {
+  Layers layers;
+  std::shared_ptr<const Pixels> skin_texture;  // null: the skin's plain colour
+  bool ground = true;
+  double ground_height_m = 0;  // where characters stand
+  CameraSpec camera;
+  Box framing;  // what the camera frames, e.g. over a whole motion; empty = this frame
+  double aspect = 16.0 / 9;
+  int solid_detail = 40;  // segments around a muscle or ornament
+};
+
+// The picture of a character at one moment. `skin` is its surface in that state (skinSurface, or a
+// recording's frame); it may be empty. Only skeleton, flesh and ornaments of the state are read, so
+// a state whose skin was played from a file does as well.
+Scene buildScene(const Character& character, const CharacterState& state, const TriangleMesh& skin,
+                 const SceneOptions& options);
+
+// What there is to see of a character with these layers: for framing a motion, add the boxes of its
+// frames.
+Box visibleBounds(const CharacterState& state, const TriangleMesh& skin, const Layers& layers);
+
+}  // namespace fascia
