@@ -51,9 +51,9 @@ TEST(StepControl, TradesStepsForAccuracyWithEveryAdaptiveMethod) {
   for (const IntegratorInfo& info : integrators()) {
     if (!info.make()->adaptive()) continue;
     StepperStats loose, tight;
-    const double loose_error = keplerError(info.name, 1e-5, loose);
-    const double tight_error = keplerError(info.name, 1e-7, tight);
-    EXPECT_LT(tight_error, 0.2 * loose_error) << info.name;
+    const double looseError = keplerError(info.name, 1e-5, loose);
+    const double tightError = keplerError(info.name, 1e-7, tight);
+    EXPECT_LT(tightError, 0.2 * looseError) << info.name;
     EXPECT_GT(2 * tight.steps, 3 * loose.steps) << info.name;
     EXPECT_GT(loose.rejected_inaccurate, 0) << info.name << ": the first step is far too long";
     EXPECT_EQ(tight.forced_steps, 0) << info.name;
@@ -181,8 +181,8 @@ struct Fall {
   AdaptiveStepper stepper;
   OdeState state{0, {1}, {0}};
 
-  Fall(bool tells_depth, double correction_limit_m)
-      : ball(tells_depth), stepper(makeIntegrator("verlet"), options(correction_limit_m)) {}
+  Fall(bool tellsDepth, double correction_limit_m)
+      : ball(tellsDepth), stepper(makeIntegrator("verlet"), options(correction_limit_m)) {}
   static StepperOptions options(double correction_limit_m) {
     StepperOptions o = absoluteOptions(1);  // accuracy alone would allow steps of 0.4 s
     o.correction_limit_m = correction_limit_m;
@@ -191,25 +191,33 @@ struct Fall {
 };
 
 TEST(Contact, StopsTheStepWhereTheBallTouchesTheFloor) {
-  const double limit = 1e-4;
-  Fall fall(true, limit);
-  fall.stepper.advance(fall.ball, fall.state, 1);
-  const double touch_s = std::sqrt(2 / FallingBall::kGravity);
+  const double limit = 1e-6, touch_s = std::sqrt(2 / FallingBall::kGravity);
   const double speed = FallingBall::kGravity * touch_s;
-  EXPECT_GT(fall.stepper.stats().rejected_contact, 0);
-  EXPECT_LE(fall.stepper.stats().largest_correction_m, limit);
+  Fall fall(true, limit);
+  fall.stepper.advance(fall.ball, fall.state, touch_s + 2 * limit / speed);
   EXPECT_EQ(fall.state.r[0], 0);
   EXPECT_EQ(fall.state.v[0], 0);
+  EXPECT_GE(fall.ball.touchTime_s, touch_s);
+  EXPECT_LE(fall.ball.touchTime_s, touch_s + limit / speed);
+  EXPECT_LE(fall.stepper.stats().largest_correction_m, limit);
+}
 
-  Fall deep(false, limit);
-  deep.stepper.advance(deep.ball, deep.state, 1);
-  EXPECT_GT(deep.stepper.stats().largest_correction_m, 100 * limit)
-      << "without bracketing the ball would not sink in: the test shows nothing";
+TEST(Contact, FindsTheTouchingTimeWithOneRejectedStep) {
+  Fall fall(true, 1e-6);
+  fall.state.r[0] = 2e-3;
+  fall.state.v[0] = -1;
+  fall.ball.gravity_m_per_s2 = 0;
+  fall.stepper.advance(fall.ball, fall.state, 1);
+  EXPECT_EQ(fall.stepper.stats().rejected_contact, 1);
+  EXPECT_NEAR(fall.ball.touchTime_s, 2e-3, 1e-6);
+  EXPECT_LE(fall.stepper.stats().largest_correction_m, 1e-6);
+}
 
-  Fall until(true, limit);
-  until.stepper.advance(until.ball, until.state, touch_s + 2 * limit / speed);
-  EXPECT_GE(until.state.t_s, touch_s);
-  EXPECT_LE(until.stepper.stats().largest_correction_m, limit);
+TEST(Contact, SinksInWhereTheSystemCannotTellItsDepth) {
+  Fall fall(false, 1e-6);
+  fall.stepper.advance(fall.ball, fall.state, 1);
+  EXPECT_GT(fall.stepper.stats().largest_correction_m, 1e-3);
+  EXPECT_EQ(fall.state.r[0], 0);
 }
 
 TEST(Contact, TakesADeepStartWithoutShrinkingSteps) {
@@ -237,7 +245,7 @@ class BrokenForce : public SecondOrderSystem {
  public:
   BrokenForce(double from_s, double until_s) : from_s_(from_s), until_s_(until_s) {}
   std::size_t size() const override { return 3; }
-  std::span<const double> inverseMass() const override { return inverse_mass_; }
+  std::span<const double> inverseMass() const override { return inverseMass_; }
   void addPositionForces(double t, std::span<const double> r, std::span<double> f) override {
     f[0] -= 4 * r[0];
     f[1] -= 4 * r[1];
@@ -246,7 +254,7 @@ class BrokenForce : public SecondOrderSystem {
 
  private:
   double from_s_, until_s_;
-  std::vector<double> inverse_mass_{1, 1, 0};
+  std::vector<double> inverseMass_{1, 1, 0};
 };
 
 TEST(Repair, NeverLetsNanOutWithAnyMethod) {

@@ -99,10 +99,10 @@ TEST_P(EveryIntegrator, IsNamedInTheRegistryAsItNamesItself) {
   EXPECT_EQ(method_->name(), GetParam());
 }
 
-std::vector<std::string> names(bool adaptive_only) {
+std::vector<std::string> names(bool adaptiveOnly) {
   std::vector<std::string> result;
   for (const IntegratorInfo& info : integrators()) {
-    if (!adaptive_only || info.make()->adaptive()) result.emplace_back(info.name);
+    if (!adaptiveOnly || info.make()->adaptive()) result.emplace_back(info.name);
   }
   return result;
 }

@@ -69,8 +69,8 @@ TEST(Leapfrog, EvaluatesPositionForcesOncePerStepAndIteratesVelocityForcesOnly) 
   Oscillator system(4, 2);
   const auto method = make("verlet");
   runSteps(*method, system, {0, {1}, {0}}, 1, 10);
-  EXPECT_EQ(system.position_calls, 10);
-  EXPECT_GT(system.velocity_calls, 20);
+  EXPECT_EQ(system.positionCalls, 10);
+  EXPECT_GT(system.velocityCalls, 20);
 }
 
 TEST(Leapfrog, SolvesTheMidpointVelocityEquation) {
@@ -79,10 +79,10 @@ TEST(Leapfrog, SolvesTheMidpointVelocityEquation) {
   OdeState next;
   make("verlet")->step(system, {0, {1}, {0.3}}, h, next);
   // v⁺ = v + h (−k r½ − c (v + v⁺)/2), solved by hand
-  const double mid_r = 1 + 0.5 * h * 0.3;
-  const double v = (0.3 * (1 - 0.5 * h * c) - h * k * mid_r) / (1 + 0.5 * h * c);
+  const double midR = 1 + 0.5 * h * 0.3;
+  const double v = (0.3 * (1 - 0.5 * h * c) - h * k * midR) / (1 + 0.5 * h * c);
   EXPECT_NEAR(next.v[0], v, 1e-13);
-  EXPECT_NEAR(next.r[0], mid_r + 0.5 * h * v, 1e-14);
+  EXPECT_NEAR(next.r[0], midR + 0.5 * h * v, 1e-14);
 }
 
 TEST(Leapfrog, FailsWhereTheVelocityIterationDiverges) {
@@ -162,11 +162,11 @@ INSTANTIATE_TEST_SUITE_P(Ode, ImplicitIntegrator, testing::Values("implicit-eule
 TEST(ForceJacobian, ByDefaultEqualsTheAnalyticOne) {
   SpringChain chain(5, 300, 0.7, MatrixKind::symmetric);
   const OdeState s = runSteps(*make("rk4"), chain, chain.start(), 0.3, 300);
-  SparseMatrix dfdr, dfdv, numeric_dfdr, numeric_dfdv;
+  SparseMatrix dfdr, dfdv, numericDfdr, numericDfdv;
   chain.forceJacobian(0, s.r, s.v, dfdr, dfdv);
-  chain.SecondOrderSystem::forceJacobian(0, s.r, s.v, numeric_dfdr, numeric_dfdv);
-  EXPECT_LT(derivativeMismatch(Eigen::MatrixXd(dfdr), Eigen::MatrixXd(numeric_dfdr)), 1e-8);
-  EXPECT_LT(derivativeMismatch(Eigen::MatrixXd(dfdv), Eigen::MatrixXd(numeric_dfdv)), 1e-8);
+  chain.SecondOrderSystem::forceJacobian(0, s.r, s.v, numericDfdr, numericDfdv);
+  EXPECT_LT(derivativeMismatch(Eigen::MatrixXd(dfdr), Eigen::MatrixXd(numericDfdr)), 1e-8);
+  EXPECT_LT(derivativeMismatch(Eigen::MatrixXd(dfdv), Eigen::MatrixXd(numericDfdv)), 1e-8);
 }
 
 }  // namespace

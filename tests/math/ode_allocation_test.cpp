@@ -35,10 +35,10 @@ TEST(AdaptiveStepper, AllocatesNothingAfterWarmUpWithExplicitMethods) {
     OdeState state = chain.start();
     stepper.advance(chain, state, 0.1);
     const long before = allocations;
-    const auto steps_before = stepper.stats().steps;
+    const auto stepsBefore = stepper.stats().steps;
     stepper.advance(chain, state, 0.3);
     EXPECT_EQ(allocations - before, 0) << name;
-    EXPECT_GT(stepper.stats().steps, steps_before + 5) << name;
+    EXPECT_GT(stepper.stats().steps, stepsBefore + 5) << name;
   }
 }
 
@@ -51,12 +51,12 @@ TEST(AdaptiveStepper, AllocatesNothingAfterWarmUpInContactAndRepair) {
   stepper.advance(ball, state, 0.5);  // has touched the floor
   state.r[0] = 1;
   const long before = allocations;
-  const auto contacts_before = stepper.stats().rejected_contact;
+  const auto contactsBefore = stepper.stats().rejected_contact;
   stepper.advance(ball, state, 1.5);
   state.v[0] = HUGE_VAL;
   stepper.advance(ball, state, 1.6);
   EXPECT_EQ(allocations - before, 0);
-  EXPECT_GT(stepper.stats().rejected_contact, contacts_before);
+  EXPECT_GT(stepper.stats().rejected_contact, contactsBefore);
   EXPECT_GT(stepper.stats().repaired_coordinates, 0);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -14,40 +15,40 @@ namespace fascia::test {
 class Oscillator : public SecondOrderSystem {
  public:
   Oscillator(double stiffness, double damping, double mass = 1)
-      : k_(stiffness), c_(damping), inverse_mass_{1 / mass} {}
+      : k_(stiffness), c_(damping), inverseMass_{1 / mass} {}
   std::size_t size() const override { return 1; }
-  std::span<const double> inverseMass() const override { return inverse_mass_; }
+  std::span<const double> inverseMass() const override { return inverseMass_; }
   bool hasVelocityForces() const override { return c_ != 0; }
   void addPositionForces(double, std::span<const double> r, std::span<double> f) override {
-    ++position_calls;
+    ++positionCalls;
     f[0] -= k_ * r[0];
   }
   void addVelocityForces(double, std::span<const double>, std::span<const double> v,
                          std::span<double> f) override {
-    ++velocity_calls;
+    ++velocityCalls;
     f[0] -= c_ * v[0];
   }
   double energy(const OdeState& s) const {
-    return 0.5 * s.v[0] * s.v[0] / inverse_mass_[0] + 0.5 * k_ * s.r[0] * s.r[0];
+    return 0.5 * s.v[0] * s.v[0] / inverseMass_[0] + 0.5 * k_ * s.r[0] * s.r[0];
   }
   // Under-damped motion from r = 1, v = 0.
   double exact(double t) const {
-    const double decay = 0.5 * c_ * inverse_mass_[0];
-    const double omega = std::sqrt(k_ * inverse_mass_[0] - decay * decay);
+    const double decay = 0.5 * c_ * inverseMass_[0];
+    const double omega = std::sqrt(k_ * inverseMass_[0] - decay * decay);
     return std::exp(-decay * t) * (std::cos(omega * t) + decay / omega * std::sin(omega * t));
   }
-  int position_calls = 0, velocity_calls = 0;
+  int positionCalls = 0, velocityCalls = 0;
 
  private:
   double k_, c_;
-  std::vector<double> inverse_mass_;
+  std::vector<double> inverseMass_;
 };
 
 // r̈ = −9 r − v + drive(t) with the drive that makes sin 2t its solution.
 class DrivenOscillator : public SecondOrderSystem {
  public:
   std::size_t size() const override { return 1; }
-  std::span<const double> inverseMass() const override { return inverse_mass_; }
+  std::span<const double> inverseMass() const override { return inverseMass_; }
   bool hasVelocityForces() const override { return true; }
   bool forcesDependOnTime() const override { return true; }
   void addPositionForces(double t, std::span<const double> r, std::span<double> f) override {
@@ -60,7 +61,7 @@ class DrivenOscillator : public SecondOrderSystem {
   static double exact(double t) { return std::sin(2 * t); }
 
  private:
-  std::vector<double> inverse_mass_{1};
+  std::vector<double> inverseMass_{1};
 };
 
 // A body around a fixed centre, r̈ = −r/|r|³, on an ellipse of semi-major axis 1.
@@ -68,7 +69,7 @@ class Kepler : public SecondOrderSystem {
  public:
   explicit Kepler(double eccentricity) : e_(eccentricity) {}
   std::size_t size() const override { return 2; }
-  std::span<const double> inverseMass() const override { return inverse_mass_; }
+  std::span<const double> inverseMass() const override { return inverseMass_; }
   void addPositionForces(double, std::span<const double> r, std::span<double> f) override {
     const double d = std::hypot(r[0], r[1]);
     f[0] -= r[0] / (d * d * d);
@@ -85,7 +86,7 @@ class Kepler : public SecondOrderSystem {
 
  private:
   double e_;
-  std::vector<double> inverse_mass_{1, 1};
+  std::vector<double> inverseMass_{1, 1};
 };
 
 // A unit mass on a spring whose other end is driven with constant velocity u: in the end's frame
@@ -94,7 +95,7 @@ class TowedMass : public SecondOrderSystem {
  public:
   static constexpr double kStiffness = 4, kSpeed = 0.5;
   std::size_t size() const override { return 2; }
-  std::span<const double> inverseMass() const override { return inverse_mass_; }
+  std::span<const double> inverseMass() const override { return inverseMass_; }
   void addPositionForces(double, std::span<const double> r, std::span<double> f) override {
     const double pull = kStiffness * (r[1] - r[0]);
     f[0] += pull;
@@ -107,7 +108,7 @@ class TowedMass : public SecondOrderSystem {
   }
 
  private:
-  std::vector<double> inverse_mass_{1, 0};
+  std::vector<double> inverseMass_{1, 0};
 };
 
 // Planar points joined by damped springs of unit rest length into a chain whose first point is
@@ -115,11 +116,11 @@ class TowedMass : public SecondOrderSystem {
 class SpringChain : public SecondOrderSystem {
  public:
   SpringChain(std::size_t points, double stiffness, double damping, MatrixKind kind)
-      : inverse_mass_(2 * points, 1.0), k_(stiffness), c_(damping), kind_(kind) {
-    inverse_mass_[0] = inverse_mass_[1] = 0;
+      : inverseMass_(2 * points, 1.0), k_(stiffness), c_(damping), kind_(kind) {
+    inverseMass_[0] = inverseMass_[1] = 0;
   }
-  std::size_t size() const override { return inverse_mass_.size(); }
-  std::span<const double> inverseMass() const override { return inverse_mass_; }
+  std::size_t size() const override { return inverseMass_.size(); }
+  std::span<const double> inverseMass() const override { return inverseMass_; }
   bool hasVelocityForces() const override { return true; }
   MatrixKind jacobianKind() const override { return kind_; }
 
@@ -166,7 +167,7 @@ class SpringChain : public SecondOrderSystem {
       }
     }
   }
-  std::vector<double> inverse_mass_;
+  std::vector<double> inverseMass_;
   double k_, c_;
   MatrixKind kind_;
 };
@@ -175,30 +176,30 @@ class SpringChain : public SecondOrderSystem {
 class FallingBall : public SecondOrderSystem {
  public:
   static constexpr double kGravity = 9.81;
-  explicit FallingBall(bool tells_depth = true) : tells_depth_(tells_depth) {}
+  explicit FallingBall(bool tellsDepth = true) : tellsDepth_(tellsDepth) {}
   std::size_t size() const override { return 1; }
-  std::span<const double> inverseMass() const override { return inverse_mass_; }
+  std::span<const double> inverseMass() const override { return inverseMass_; }
   void addPositionForces(double, std::span<const double>, std::span<double> f) override {
-    f[0] -= kGravity;
+    f[0] -= gravity_m_per_s2;
   }
   double violation(double, std::span<const double> r) override {
-    return tells_depth_ ? std::max(0.0, -r[0]) : 0;
+    return tellsDepth_ ? std::max(0.0, -r[0]) : 0;
   }
   double project(double t, std::span<double> r, std::span<double> v) override {
     const double depth = std::max(0.0, -r[0]);
     if (depth > 0) {
-      if (first_correction_m == 0) touch_t_s = t;
-      first_correction_m = std::max(first_correction_m, depth);
+      touchTime_s = std::min(touchTime_s, t);
       r[0] = 0;
       v[0] = std::max(0.0, v[0]);
     }
     return depth;
   }
-  double first_correction_m = 0, touch_t_s = -1;
+  double gravity_m_per_s2 = kGravity;
+  double touchTime_s = HUGE_VAL;  // the earliest at which it was found inside the floor
 
  private:
-  bool tells_depth_;
-  std::vector<double> inverse_mass_{1};
+  bool tellsDepth_;
+  std::vector<double> inverseMass_{1};
 };
 
 // Runs `count` equal steps of a method from a state.

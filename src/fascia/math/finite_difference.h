@@ -12,8 +12,8 @@ namespace fascia {
 inline constexpr double kDifferenceStep = 6e-6;
 
 // Step for the coordinate x, exactly representable as a difference from x.
-inline double differenceStep(double x, double relative_step) {
-  const double wanted = relative_step * std::max(1.0, std::abs(x));
+inline double differenceStep(double x, double relativeStep) {
+  const double wanted = relativeStep * std::max(1.0, std::abs(x));
   const volatile double shifted = x + wanted;
   return shifted - x;
 }
@@ -21,10 +21,10 @@ inline double differenceStep(double x, double relative_step) {
 // Gradient of a scalar function: value(x) -> double.
 template <class Function>
 Eigen::VectorXd numericGradient(Function&& value, Eigen::VectorXd x,
-                                double relative_step = kDifferenceStep) {
+                                double relativeStep = kDifferenceStep) {
   Eigen::VectorXd gradient(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double at = x[i], step = differenceStep(at, relative_step);
+    const double at = x[i], step = differenceStep(at, relativeStep);
     x[i] = at + step;
     const double above = value(x);
     x[i] = at - step;
@@ -38,10 +38,10 @@ Eigen::VectorXd numericGradient(Function&& value, Eigen::VectorXd x,
 // Jacobian of a vector function: values(x) -> VectorXd. Entry (i, j) = ∂value_i/∂x_j.
 template <class Function>
 Eigen::MatrixXd numericJacobian(Function&& values, Eigen::VectorXd x,
-                                double relative_step = kDifferenceStep) {
+                                double relativeStep = kDifferenceStep) {
   Eigen::MatrixXd jacobian;
   for (Eigen::Index j = 0; j < x.size(); ++j) {
-    const double at = x[j], step = differenceStep(at, relative_step);
+    const double at = x[j], step = differenceStep(at, relativeStep);
     x[j] = at + step;
     const Eigen::VectorXd above = values(x);
     x[j] = at - step;

@@ -47,26 +47,26 @@ struct SparseFactorization::Impl {
   enum class Ready { none, cholesky, lu };
   MatrixKind kind;
   Ready ready = Ready::none;
-  int symbolic_count = 0;
-  Pattern cholesky_pattern, lu_pattern;
+  int symbolicCount = 0;
+  Pattern choleskyPattern, luPattern;
   Eigen::SimplicialLDLT<SparseMatrix> cholesky;
   Eigen::SparseLU<SparseMatrix> lu;
 
   bool factorizeSymmetric(const SparseMatrix& a) {
-    if (!cholesky_pattern.matches(a)) {
+    if (!choleskyPattern.matches(a)) {
       cholesky.analyzePattern(a);
-      cholesky_pattern.assign(a);
-      ++symbolic_count;
+      choleskyPattern.assign(a);
+      ++symbolicCount;
     }
     cholesky.factorize(a);
     return cholesky.info() == Eigen::Success;
   }
 
   bool factorizeGeneral(const SparseMatrix& a) {
-    if (!lu_pattern.matches(a)) {
+    if (!luPattern.matches(a)) {
       lu.analyzePattern(a);
-      lu_pattern.assign(a);
-      ++symbolic_count;
+      luPattern.assign(a);
+      ++symbolicCount;
     }
     lu.factorize(a);
     return lu.info() == Eigen::Success;
@@ -115,7 +115,7 @@ bool SparseFactorization::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) co
 }
 
 int SparseFactorization::symbolicCount() const {
-  return impl_->symbolic_count;
+  return impl_->symbolicCount;
 }
 
 bool solveSparse(const SparseMatrix& a, const Eigen::VectorXd& b, Eigen::VectorXd& x,

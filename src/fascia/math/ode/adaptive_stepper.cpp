@@ -53,11 +53,11 @@ bool allFinite(std::span<const double> x) {
 // Cubic Hermite interpolation between two states, s in [0, 1].
 void interpolate(const OdeState& a, const OdeState& b, double s, std::vector<double>& r) {
   const double h = b.t_s - a.t_s, u = 1 - s;
-  const double a_r = u * u * (1 + 2 * s), a_v = h * s * u * u;
-  const double b_r = s * s * (3 - 2 * s), b_v = -h * s * s * u;
+  const double aR = u * u * (1 + 2 * s), aV = h * s * u * u;
+  const double bR = s * s * (3 - 2 * s), bV = -h * s * s * u;
   r.resize(a.r.size());
   for (std::size_t i = 0; i < r.size(); ++i)
-    r[i] = a_r * a.r[i] + a_v * a.v[i] + b_r * b.r[i] + b_v * b.v[i];
+    r[i] = aR * a.r[i] + aV * a.v[i] + bR * b.r[i] + bV * b.v[i];
 }
 
 }  // namespace
@@ -81,8 +81,8 @@ void AdaptiveStepper::setOptions(const StepperOptions& options) {
 }
 
 void AdaptiveStepper::reset() {
-  next_step_s_ = options_.fixed_step_s;
-  repairs_in_a_row_ = 0;
+  nextStep_s_ = options_.fixed_step_s;
+  repairsInARow_ = 0;
   integrator_->reset();
 }
 
@@ -99,7 +99,7 @@ void AdaptiveStepper::advance(SecondOrderSystem& system, OdeState& state, double
 // Equal steps up to the target rather than a sliver at its end; but none that t cannot resolve.
 double AdaptiveStepper::firstTry(double remaining_s, double t_s) const {
   const double limit = integrator_->adaptive() ? options_.step_max_s : options_.fixed_step_s;
-  const double wanted = std::max(std::min(next_step_s_, limit), kResolution * std::abs(t_s));
+  const double wanted = std::max(std::min(nextStep_s_, limit), kResolution * std::abs(t_s));
   return remaining_s / std::max(1.0, std::ceil(remaining_s / wanted * (1 - 1e-9)));
 }
 
@@ -133,18 +133,18 @@ void AdaptiveStepper::step(SecondOrderSystem& system, OdeState& state, double ta
 
 // What to try instead of a step that failed or is inaccurate; h if it is to be taken, mended if it
 // is the last resort.
-double AdaptiveStepper::shorter(const OdeState& from, std::span<const double> inverse_mass,
-                                double h, double error, bool last) {
-  if (!sound(inverse_mass, from, error)) {
-    if (last || repairs_in_a_row_ >= kMaxShortRepairs) {
-      repair(inverse_mass, from, h, error);
+double AdaptiveStepper::shorter(const OdeState& from, std::span<const double> inverseMass, double h,
+                                double error, bool last) {
+  if (!sound(inverseMass, from, error)) {
+    if (last || repairsInARow_ >= kMaxShortRepairs) {
+      repair(inverseMass, from, h, error);
       return h;
     }
     ++stats_.rejected_failed;
     integrator_->reset();
     return 0.5 * h;
   }
-  repairs_in_a_row_ = 0;
+  repairsInARow_ = 0;
   if (!(error > options_.tolerance)) return h;
   if (last) {
     ++stats_.forced_steps;
@@ -154,13 +154,13 @@ double AdaptiveStepper::shorter(const OdeState& from, std::span<const double> in
   return accurateStep(h, error);
 }
 
-bool AdaptiveStepper::sound(std::span<const double> inverse_mass, const OdeState& from,
+bool AdaptiveStepper::sound(std::span<const double> inverseMass, const OdeState& from,
                             double error) const {
   if (!std::isfinite(error)) return false;
   for (std::size_t i = 0; i < from.r.size(); ++i) {
     const double move = std::abs(trial_.r[i] - from.r[i]);
     if (!std::isfinite(move) || !std::isfinite(trial_.v[i])) return false;
-    if (inverse_mass[i] > 0 && move > options_.move_limit_m) return false;
+    if (inverseMass[i] > 0 && move > options_.move_limit_m) return false;
   }
   return true;
 }
@@ -178,26 +178,26 @@ double AdaptiveStepper::constrain(SecondOrderSystem& system) {
 
 // Makes the trial finite and slower: coordinates that the step spoiled go on with the velocity that
 // they had, and all free ones lose some of theirs, because what ran away had sound neighbours.
-void AdaptiveStepper::repair(std::span<const double> inverse_mass, const OdeState& from, double h,
+void AdaptiveStepper::repair(std::span<const double> inverseMass, const OdeState& from, double h,
                              double error) {
   const double limit = options_.move_limit_m;
   const bool failed = error == kStepFailed;
   for (std::size_t i = 0; i < from.r.size(); ++i) {
-    const bool is_free = inverse_mass[i] > 0;
+    const bool isFree = inverseMass[i] > 0;
     const double move = std::abs(trial_.r[i] - from.r[i]);
     const bool spoiled =
-        failed || !std::isfinite(move) || !std::isfinite(trial_.v[i]) || (is_free && move > limit);
+        failed || !std::isfinite(move) || !std::isfinite(trial_.v[i]) || (isFree && move > limit);
     if (spoiled) {
       const double ballistic = h * from.v[i];
-      trial_.r[i] = from.r[i] + (is_free ? std::clamp(ballistic, -limit, limit) : ballistic);
+      trial_.r[i] = from.r[i] + (isFree ? std::clamp(ballistic, -limit, limit) : ballistic);
       trial_.v[i] = from.v[i];
       if (!std::isfinite(trial_.r[i])) trial_.r[i] = from.r[i];
       ++stats_.repaired_coordinates;
     }
-    if (is_free) trial_.v[i] *= options_.repair_damping;
+    if (isFree) trial_.v[i] *= options_.repair_damping;
   }
   ++stats_.repaired_steps;
-  ++repairs_in_a_row_;
+  ++repairsInARow_;
   integrator_->reset();
 }
 
@@ -252,11 +252,10 @@ void AdaptiveStepper::accept(OdeState& state, double h, double error, double cor
   stats_.step_max_s = std::max(stats_.step_max_s, h);
   stats_.largest_correction_m = std::max(stats_.largest_correction_m, correction_m);
   if (integrator_->adaptive()) {
-    const double known_error = std::isfinite(error) ? error : 0;
-    next_step_s_ =
-        std::clamp(accurateStep(h, known_error), options_.step_min_s, options_.step_max_s);
+    const double knownError = std::isfinite(error) ? error : 0;
+    nextStep_s_ = std::clamp(accurateStep(h, knownError), options_.step_min_s, options_.step_max_s);
   } else {
-    next_step_s_ = std::min(kGrow * h, options_.fixed_step_s);
+    nextStep_s_ = std::min(kGrow * h, options_.fixed_step_s);
   }
 }
 

@@ -58,18 +58,18 @@ class AdaptiveStepper {
 
   const Integrator& integrator() const { return *integrator_; }
   const StepperOptions& options() const { return options_; }
-  double nextStep_s() const { return next_step_s_; }
+  double nextStep_s() const { return nextStep_s_; }
   const StepperStats& stats() const { return stats_; }
   void resetStats() { stats_ = {}; }
 
  private:
   void step(SecondOrderSystem& system, OdeState& state, double target_s);
   double firstTry(double remaining_s, double t_s) const;
-  bool sound(std::span<const double> inverse_mass, const OdeState& from, double error) const;
-  double shorter(const OdeState& from, std::span<const double> inverse_mass, double h_s,
+  bool sound(std::span<const double> inverseMass, const OdeState& from, double error) const;
+  double shorter(const OdeState& from, std::span<const double> inverseMass, double h_s,
                  double error, bool last);
   double constrain(SecondOrderSystem& system);
-  void repair(std::span<const double> inverse_mass, const OdeState& from, double h_s, double error);
+  void repair(std::span<const double> inverseMass, const OdeState& from, double h_s, double error);
   void mendStart(OdeState& state);
   double touchingStep(SecondOrderSystem& system, const OdeState& from, double h_s);
   double accurateStep(double h_s, double error) const;
@@ -78,8 +78,8 @@ class AdaptiveStepper {
   std::unique_ptr<Integrator> integrator_;
   StepperOptions options_;
   StepperStats stats_;
-  double next_step_s_ = 0;
-  int repairs_in_a_row_ = 0;
+  double nextStep_s_ = 0;
+  int repairsInARow_ = 0;
   OdeState trial_, free_;        // after the step; before project() moved it
   std::vector<double> between_;  // positions within the step, while bracketing
   MeasuredSystem measured_;

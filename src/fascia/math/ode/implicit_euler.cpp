@@ -16,7 +16,7 @@ class ImplicitEuler final : public Integrator {
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
     const std::size_t n = system.size();
     to.resize(n), force_.resize(n);
-    if (acceleration_.size() != n) acceleration_.assign(n, 0.0), matrix_h_ = 0;
+    if (acceleration_.size() != n) acceleration_.assign(n, 0.0), matrixStep_s_ = 0;
     to.t_s = from.t_s + h;
     for (std::size_t i = 0; i < n; ++i) to.v[i] = from.v[i] + h * acceleration_[i];
     if (!solve(system, from, h, to)) {
@@ -31,7 +31,7 @@ class ImplicitEuler final : public Integrator {
                       [&](std::size_t i) { return 0.5 * h * (to.v[i] - from.v[i]); });
   }
 
-  void reset() override { acceleration_.clear(), matrix_h_ = 0; }
+  void reset() override { acceleration_.clear(), matrixStep_s_ = 0; }
 
  private:
   bool solve(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) {
@@ -39,25 +39,25 @@ class ImplicitEuler final : public Integrator {
     constexpr double kSlowRate = 0.2;
     // A matrix for another step length is off by about twice its relative difference.
     constexpr double kSameStep = 0.05;
-    double last_change = 0;
+    double lastChange = 0;
     bool fresh = false;
     for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
       for (std::size_t i = 0; i < from.r.size(); ++i) to.r[i] = from.r[i] + h * to.v[i];
-      if (std::abs(matrix_h_ - h) > kSameStep * h) {
+      if (std::abs(matrixStep_s_ - h) > kSameStep * h) {
         if (!matrix_.update(system, to.t_s, to.r, to.v, h, h * h)) return false;
-        matrix_h_ = h, fresh = true;
+        matrixStep_s_ = h, fresh = true;
       }
       const double change = correct(system, from, h, to);
       if (!std::isfinite(change)) {
         if (fresh) return false;
         // An outdated matrix may have thrown the iterate far off: begin again with a new one.
         std::ranges::copy(from.v, to.v.begin());
-        matrix_h_ = 0, last_change = 0;
+        matrixStep_s_ = 0, lastChange = 0;
         continue;
       }
       if (change <= settings_.velocity_tolerance) return finish(from, h, to);
-      if (last_change > 0 && change > kSlowRate * last_change) matrix_h_ = 0;
-      last_change = change, fresh = false;
+      if (lastChange > 0 && change > kSlowRate * lastChange) matrixStep_s_ = 0;
+      lastChange = change, fresh = false;
     }
     return false;
   }
@@ -85,7 +85,7 @@ class ImplicitEuler final : public Integrator {
   }
 
   ImplicitMatrix matrix_;
-  double matrix_h_ = 0;  // the step that matrix_ was built for; 0 = build it anew
+  double matrixStep_s_ = 0;  // the step that matrix_ was built for; 0 = build it anew
   std::vector<double> acceleration_, force_;
   Eigen::VectorXd residual_, correction_;
 };

@@ -8,25 +8,25 @@ bool ImplicitMatrix::update(SecondOrderSystem& system, double t_s, std::span<con
     kind_ = system.jacobianKind();
     factorization_ = SparseFactorization(kind_);
   }
-  const std::span<const double> inverse_mass = system.inverseMass();
+  const std::span<const double> inverseMass = system.inverseMass();
   const auto n = static_cast<Eigen::Index>(system.size());
   system.forceJacobian(t_s, r, v, dfdr_, dfdv_);
 
   mass_.resize(n, n);
   mass_.setIdentity();
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double w = inverse_mass[static_cast<std::size_t>(i)];
+    const double w = inverseMass[static_cast<std::size_t>(i)];
     if (w > 0) mass_.valuePtr()[i] = 1 / w;
   }
   matrix_ = mass_ - a_s * dfdv_;
   matrix_ = (matrix_ - b_s2 * dfdr_).eval();
-  removeDriven(inverse_mass);
+  removeDriven(inverseMass);
   return factorization_.factorize(matrix_);
 }
 
-void ImplicitMatrix::removeDriven(std::span<const double> inverse_mass) {
+void ImplicitMatrix::removeDriven(std::span<const double> inverseMass) {
   const auto driven = [&](Eigen::Index i) {
-    return !(inverse_mass[static_cast<std::size_t>(i)] > 0);
+    return !(inverseMass[static_cast<std::size_t>(i)] > 0);
   };
   for (Eigen::Index column = 0; column < matrix_.outerSize(); ++column) {
     for (SparseMatrix::InnerIterator entry(matrix_, column); entry; ++entry) {

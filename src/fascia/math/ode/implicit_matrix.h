@@ -20,7 +20,7 @@ class ImplicitMatrix {
   const SparseMatrix& forceByPosition() const { return dfdr_; }
 
  private:
-  void removeDriven(std::span<const double> inverse_mass);
+  void removeDriven(std::span<const double> inverseMass);
 
   MatrixKind kind_ = MatrixKind::general;
   SparseFactorization factorization_{MatrixKind::general};

@@ -13,26 +13,26 @@ class RungeKutta2 final : public Integrator {
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
     const std::size_t n = system.size();
     const std::span<const double> w = system.inverseMass();
-    to.resize(n), force_.resize(n), mid_r_.resize(n), mid_v_.resize(n);
+    to.resize(n), force_.resize(n), midR_.resize(n), midV_.resize(n);
     to.t_s = from.t_s + h;
 
     evaluateForces(system, from.t_s, from.r, from.v, force_);
     for (std::size_t i = 0; i < n; ++i) {
-      mid_r_[i] = from.r[i] + 0.5 * h * from.v[i];
-      mid_v_[i] = w[i] > 0 ? from.v[i] + 0.5 * h * w[i] * force_[i] : from.v[i];
+      midR_[i] = from.r[i] + 0.5 * h * from.v[i];
+      midV_[i] = w[i] > 0 ? from.v[i] + 0.5 * h * w[i] * force_[i] : from.v[i];
     }
-    evaluateForces(system, from.t_s + 0.5 * h, mid_r_, mid_v_, force_);
+    evaluateForces(system, from.t_s + 0.5 * h, midR_, midV_, force_);
     for (std::size_t i = 0; i < n; ++i) {
-      to.r[i] = from.r[i] + h * mid_v_[i];
+      to.r[i] = from.r[i] + h * midV_[i];
       to.v[i] = w[i] > 0 ? from.v[i] + h * w[i] * force_[i] : from.v[i];
     }
     // r_E − r⁺ = h (v − v½)
     return scaledNorm(from.r, settings_.position_scale,
-                      [&](std::size_t i) { return h * (mid_v_[i] - from.v[i]); });
+                      [&](std::size_t i) { return h * (midV_[i] - from.v[i]); });
   }
 
  private:
-  std::vector<double> force_, mid_r_, mid_v_;
+  std::vector<double> force_, midR_, midV_;
 };
 
 }  // namespace

@@ -11,17 +11,17 @@ class RungeKutta4 final : public Integrator {
 
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
     const std::size_t n = system.size();
-    to.resize(n), force_.resize(n), stage_r_.resize(n), stage_v_.resize(n);
+    to.resize(n), force_.resize(n), stageR_.resize(n), stageV_.resize(n);
     to.t_s = from.t_s + h;
     std::ranges::copy(from.r, to.r.begin());
     std::ranges::copy(from.v, to.v.begin());
-    std::ranges::copy(from.r, stage_r_.begin());
-    std::ranges::copy(from.v, stage_v_.begin());
+    std::ranges::copy(from.r, stageR_.begin());
+    std::ranges::copy(from.v, stageV_.begin());
 
     constexpr double node[] = {0, 0.5, 0.5, 1};
     constexpr double weight[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     for (int stage = 0; stage < 4; ++stage) {
-      evaluateForces(system, from.t_s + node[stage] * h, stage_r_, stage_v_, force_);
+      evaluateForces(system, from.t_s + node[stage] * h, stageR_, stageV_, force_);
       const double next = stage < 3 ? node[stage + 1] : 0;
       accumulate(system.inverseMass(), from, h * weight[stage], h * next, to);
     }
@@ -33,16 +33,16 @@ class RungeKutta4 final : public Integrator {
   void accumulate(std::span<const double> w, const OdeState& from, double weight, double node,
                   OdeState& to) {
     for (std::size_t i = 0; i < w.size(); ++i) {
-      const double velocity = stage_v_[i];
+      const double velocity = stageV_[i];
       const double acceleration = w[i] > 0 ? w[i] * force_[i] : 0;
       to.r[i] += weight * velocity;
       to.v[i] += weight * acceleration;
-      stage_r_[i] = from.r[i] + node * velocity;
-      stage_v_[i] = from.v[i] + node * acceleration;
+      stageR_[i] = from.r[i] + node * velocity;
+      stageV_[i] = from.v[i] + node * acceleration;
     }
   }
 
-  std::vector<double> force_, stage_r_, stage_v_;
+  std::vector<double> force_, stageR_, stageV_;
 };
 
 }  // namespace

@@ -31,8 +31,8 @@ class Rosenbrock4 final : public Integrator {
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
     resize(system.size(), to);
     to.t_s = from.t_s + h;
-    const double gamma_h = kGamma * h;
-    if (!matrix_.update(system, from.t_s, from.r, from.v, gamma_h, gamma_h * gamma_h)) {
+    const double gammaH_s = kGamma * h;
+    if (!matrix_.update(system, from.t_s, from.r, from.v, gammaH_s, gammaH_s * gammaH_s)) {
       return kStepFailed;
     }
     timeDerivative(system, from, h);
@@ -42,15 +42,15 @@ class Rosenbrock4 final : public Integrator {
     }
     combine(from, to);
     return scaledNorm(from.r, settings_.position_scale,
-                      [&](std::size_t i) { return weighted(g_r_, kE, i); });
+                      [&](std::size_t i) { return weighted(gR_, kE, i); });
   }
 
  private:
   using Stages = std::array<std::vector<double>, kStages>;
 
   void resize(std::size_t n, OdeState& to) {
-    to.resize(n), force_.resize(n), force_rate_.resize(n), stage_r_.resize(n), stage_v_.resize(n);
-    for (int s = 0; s < kStages; ++s) g_r_[s].resize(n), g_v_[s].resize(n);
+    to.resize(n), force_.resize(n), forceRate_.resize(n), stageR_.resize(n), stageV_.resize(n);
+    for (int s = 0; s < kStages; ++s) gR_[s].resize(n), gV_[s].resize(n);
     const auto size = static_cast<Eigen::Index>(n);
     slope_.resize(size), right_.resize(size);
   }
@@ -58,48 +58,48 @@ class Rosenbrock4 final : public Integrator {
   // ∂f/∂t by central differences over a thousandth of the step: round-off and truncation then both
   // stay far below the method's own error.
   void timeDerivative(SecondOrderSystem& system, const OdeState& from, double h) {
-    std::ranges::fill(force_rate_, 0.0);
+    std::ranges::fill(forceRate_, 0.0);
     if (!system.forcesDependOnTime()) return;
     const double later = from.t_s + 1e-3 * h, earlier = from.t_s - 1e-3 * h;
     if (!(later > earlier)) return;
-    evaluateForces(system, later, from.r, from.v, force_rate_);
+    evaluateForces(system, later, from.r, from.v, forceRate_);
     evaluateForces(system, earlier, from.r, from.v, force_);
     for (std::size_t i = 0; i < force_.size(); ++i)
-      force_rate_[i] = (force_rate_[i] - force_[i]) / (later - earlier);
+      forceRate_[i] = (forceRate_[i] - force_[i]) / (later - earlier);
   }
 
   void evaluateStage(SecondOrderSystem& system, const OdeState& from, double h, int stage) {
     const double a0 = kA[stage][0], a1 = kA[stage][1];
     for (std::size_t i = 0; i < force_.size(); ++i) {
-      stage_r_[i] = from.r[i];
-      stage_v_[i] = from.v[i];
-      if (stage > 0) stage_r_[i] += a0 * g_r_[0][i], stage_v_[i] += a0 * g_v_[0][i];
-      if (stage > 1) stage_r_[i] += a1 * g_r_[1][i], stage_v_[i] += a1 * g_v_[1][i];
+      stageR_[i] = from.r[i];
+      stageV_[i] = from.v[i];
+      if (stage > 0) stageR_[i] += a0 * gR_[0][i], stageV_[i] += a0 * gV_[0][i];
+      if (stage > 1) stageR_[i] += a1 * gR_[1][i], stageV_[i] += a1 * gV_[1][i];
     }
-    evaluateForces(system, from.t_s + kNode[stage] * h, stage_r_, stage_v_, force_);
+    evaluateForces(system, from.t_s + kNode[stage] * h, stageR_, stageV_, force_);
   }
 
   bool solveStage(std::span<const double> w, double h, int stage) {
-    const double gamma_h = kGamma * h;
+    const double gammaH_s = kGamma * h;
     for (std::size_t i = 0; i < force_.size(); ++i) {
-      double p = stage_v_[i], q = 0;
+      double p = stageV_[i], q = 0;
       for (int s = 0; s < stage; ++s) {
-        p += kC[stage][s] / h * g_r_[s][i];
-        q += kC[stage][s] / h * g_v_[s][i];
+        p += kC[stage][s] / h * gR_[s][i];
+        q += kC[stage][s] / h * gV_[s][i];
       }
       slope_[static_cast<Eigen::Index>(i)] = p;
       right_[static_cast<Eigen::Index>(i)] =
-          w[i] > 0 ? force_[i] + h * kTime[stage] * force_rate_[i] + q / w[i] : 0;
+          w[i] > 0 ? force_[i] + h * kTime[stage] * forceRate_[i] + q / w[i] : 0;
     }
-    right_ = gamma_h * right_ + gamma_h * gamma_h * (matrix_.forceByPosition() * slope_);
+    right_ = gammaH_s * right_ + gammaH_s * gammaH_s * (matrix_.forceByPosition() * slope_);
     for (std::size_t i = 0; i < force_.size(); ++i) {
       if (!(w[i] > 0)) right_[static_cast<Eigen::Index>(i)] = 0;
     }
     if (!matrix_.solve(right_, solution_)) return false;
     for (std::size_t i = 0; i < force_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      g_v_[stage][i] = solution_[k];
-      g_r_[stage][i] = gamma_h * (slope_[k] + solution_[k]);
+      gV_[stage][i] = solution_[k];
+      gR_[stage][i] = gammaH_s * (slope_[k] + solution_[k]);
     }
     return true;
   }
@@ -110,14 +110,14 @@ class Rosenbrock4 final : public Integrator {
 
   void combine(const OdeState& from, OdeState& to) const {
     for (std::size_t i = 0; i < force_.size(); ++i) {
-      to.r[i] = from.r[i] + weighted(g_r_, kB, i);
-      to.v[i] = from.v[i] + weighted(g_v_, kB, i);
+      to.r[i] = from.r[i] + weighted(gR_, kB, i);
+      to.v[i] = from.v[i] + weighted(gV_, kB, i);
     }
   }
 
   ImplicitMatrix matrix_;
-  std::vector<double> force_, force_rate_, stage_r_, stage_v_;
-  Stages g_r_, g_v_;
+  std::vector<double> force_, forceRate_, stageR_, stageV_;
+  Stages gR_, gV_;
   Eigen::VectorXd slope_, right_, solution_;
 };
 

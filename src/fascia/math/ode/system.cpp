@@ -23,9 +23,9 @@ void SecondOrderSystem::addVelocityForces(double, std::span<const double>, std::
 void SecondOrderSystem::forceJacobian(double t_s, std::span<const double> r,
                                       std::span<const double> v, SparseMatrix& dfdr,
                                       SparseMatrix& dfdv) {
-  const auto force = [&](std::span<const double> at_r, std::span<const double> at_v) {
+  const auto force = [&](std::span<const double> atR, std::span<const double> atV) {
     std::vector<double> f(size());
-    evaluateForces(*this, t_s, at_r, at_v, f);
+    evaluateForces(*this, t_s, atR, atV, f);
     return copy(f);
   };
   dfdr = numericJacobian([&](const Eigen::VectorXd& x) { return force(view(x), v); }, copy(r))

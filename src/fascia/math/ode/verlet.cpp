@@ -13,13 +13,13 @@ class Verlet final : public Integrator {
 
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
     const std::size_t n = system.size();
-    to.resize(n), position_force_.assign(n, 0.0);
+    to.resize(n), positionForce_.assign(n, 0.0);
     to.t_s = from.t_s + h;
     for (std::size_t i = 0; i < n; ++i) to.r[i] = from.r[i] + 0.5 * h * from.v[i];
-    system.addPositionForces(from.t_s + 0.5 * h, to.r, position_force_);
+    system.addPositionForces(from.t_s + 0.5 * h, to.r, positionForce_);
 
     if (!system.hasVelocityForces()) {
-      kick(system.inverseMass(), position_force_, from, h, to);
+      kick(system.inverseMass(), positionForce_, from, h, to);
     } else if (!iterateVelocity(system, from, h, to)) {
       return kStepFailed;
     }
@@ -41,23 +41,23 @@ class Verlet final : public Integrator {
   // Fixed point of (7c)–(7g). r½ stays, so only velocity forces are computed anew.
   bool iterateVelocity(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) {
     const std::size_t n = system.size();
-    force_.resize(n), mid_velocity_.resize(n), old_velocity_.resize(n);
+    force_.resize(n), midVelocity_.resize(n), oldVelocity_.resize(n);
     std::ranges::copy(from.v, to.v.begin());
     for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
-      for (std::size_t i = 0; i < n; ++i) mid_velocity_[i] = 0.5 * (to.v[i] + from.v[i]);
-      std::ranges::copy(position_force_, force_.begin());
-      system.addVelocityForces(from.t_s + 0.5 * h, to.r, mid_velocity_, force_);
-      old_velocity_.swap(to.v);
+      for (std::size_t i = 0; i < n; ++i) midVelocity_[i] = 0.5 * (to.v[i] + from.v[i]);
+      std::ranges::copy(positionForce_, force_.begin());
+      system.addVelocityForces(from.t_s + 0.5 * h, to.r, midVelocity_, force_);
+      oldVelocity_.swap(to.v);
       kick(system.inverseMass(), force_, from, h, to);
       const double change = scaledNorm(from.v, settings_.velocity_scale,
-                                       [&](std::size_t i) { return to.v[i] - old_velocity_[i]; });
+                                       [&](std::size_t i) { return to.v[i] - oldVelocity_[i]; });
       // A NaN ends it too: the caller sees it in the result, and where it is.
       if (!(change > settings_.velocity_tolerance)) return true;
     }
     return false;
   }
 
-  std::vector<double> position_force_, force_, mid_velocity_, old_velocity_;
+  std::vector<double> positionForce_, force_, midVelocity_, oldVelocity_;
 };
 
 }  // namespace
