@@ -72,6 +72,25 @@ TEST(StepControl, FindsTheStepOfEquationTwelveUnderConstantForce) {
   EXPECT_NEAR(state.r[0], 1000 - 0.5 * FallingBall::kGravity, 1e-9);
 }
 
+TEST(StepControl, TakesTheExponentFromTheOrderOfThePair) {
+  for (const char* name : {"verlet", "rk2", "implicit-euler", "rosenbrock4"}) {
+    Kepler system(0.3);
+    const double h_s = 0.05;
+    StepperOptions options = absoluteOptions(1e-2);
+    options.fixed_step_s = h_s;
+    const auto method = makeIntegrator(name);
+    method->setSettings(options.integrator);
+    OdeState next, state = system.start();
+    const double error = method->step(system, state, h_s, next);
+    // such that the step is accepted and the next one is twice as long, less the safety factor
+    options.tolerance = error * std::pow(2, method->embeddedOrder() + 1);
+    AdaptiveStepper stepper(makeIntegrator(name), options);
+    stepper.advance(system, state, h_s);
+    EXPECT_EQ(stepper.stats().steps, 1) << name;
+    EXPECT_NEAR(stepper.nextStep_s(), 0.9 * 2 * h_s, 1e-9) << name;
+  }
+}
+
 TEST(StepControl, StaysWithinItsBoundsAndReportsForcedSteps) {
   Oscillator system(1e4, 0);
   StepperOptions options = absoluteOptions(1e-9);

@@ -39,6 +39,9 @@ class ImplicitEuler final : public Integrator {
     constexpr double kSlowRate = 0.2;
     // A matrix for another step length is off by about twice its relative difference.
     constexpr double kSameStep = 0.05;
+    // Newton's method may overshoot now and then; more often, a shorter step is cheaper.
+    constexpr int kMaxGrowths = 3;
+    int growths = 0;
     double lastChange = 0;
     bool fresh = false;
     for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
@@ -55,8 +58,12 @@ class ImplicitEuler final : public Integrator {
         matrixStep_s_ = 0, lastChange = 0;
         continue;
       }
-      if (change <= settings_.velocity_tolerance) return finish(from, h, to);
+      // A matrix much stiffer than the forces are now makes small corrections of large errors: only
+      // a new matrix, or a correction that shrank as it should, can tell that there is little left.
+      const bool trusted = fresh || change <= kSlowRate * lastChange;
+      if (trusted && change <= settings_.velocity_tolerance) return finish(from, h, to);
       if (lastChange > 0 && change > kSlowRate * lastChange) matrixStep_s_ = 0;
+      if (lastChange > 0 && change > lastChange && ++growths > kMaxGrowths) return false;
       lastChange = change, fresh = false;
     }
     return false;
