@@ -28,6 +28,14 @@ template <class V>
 HWY_INLINE V dot(const Vector3<V>& a, const Vector3<V>& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Vector3<V> constants(D d, const float (&c)[3]) {
+  return {hn::Set(d, c[0]), hn::Set(d, c[1]), hn::Set(d, c[2])};
+}
+template <class V>
+HWY_INLINE Vector3<V> product(const Vector3<V>& a, const Vector3<V>& b) {
+  return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
+}
 template <class V>
 HWY_INLINE Vector3<V> scaled(const Vector3<V>& a, V s) {
   return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
@@ -37,12 +45,14 @@ HWY_INLINE Vector3<V> withSigns(const Vector3<V>& a, const Vector3<V>& signs) {
   return {hn::CopySign(a.x, signs.x), hn::CopySign(a.y, signs.y), hn::CopySign(a.z, signs.z)};
 }
 
+// Constants stay in memory as floats and are broadcast where they are used: with the short batches
+// of the skin, filling registers first would cost more than the evaluation.
 template <class D>
 class SphereKernel {
   using V = hn::Vec<D>;
 
  public:
-  SphereKernel(D d, const PrimitiveKernel& k) : radius_(hn::Set(d, k.half_m[0])) {}
+  explicit SphereKernel(const PrimitiveKernel& k) : k_(k) {}
 
   HWY_INLINE FieldValue<V> at(D d, const Vector3<V>& p) const {
     const V length2 = dot(p, p);
@@ -51,11 +61,11 @@ class SphereKernel {
     const V inverse = hn::IfThenElse(central, hn::Zero(d), hn::Div(hn::Set(d, 1.0f), length));
     Vector3<V> n = scaled(p, inverse);
     n.x = hn::IfThenElse(central, hn::Set(d, 1.0f), n.x);
-    return {hn::Sub(length, radius_), n};
+    return {hn::Sub(length, hn::Set(d, k_.half_m[0])), n};
   }
 
  private:
-  V radius_;
+  const PrimitiveKernel& k_;
 };
 
 template <class D>
@@ -63,17 +73,16 @@ class CapsuleKernel {
   using V = hn::Vec<D>;
 
  public:
-  CapsuleKernel(D d, const PrimitiveKernel& k)
-      : ball_(d, k), halfLength_(hn::Set(d, k.halfLength_m)) {}
+  explicit CapsuleKernel(const PrimitiveKernel& k) : k_(k) {}
 
   HWY_INLINE FieldValue<V> at(D d, const Vector3<V>& p) const {
-    const V onAxis = hn::Min(hn::Max(p.z, hn::Neg(halfLength_)), halfLength_);
-    return ball_.at(d, {p.x, p.y, hn::Sub(p.z, onAxis)});
+    const V half = hn::Set(d, k_.halfLength_m);
+    const V onAxis = hn::Min(hn::Max(p.z, hn::Neg(half)), half);
+    return SphereKernel<D>(k_).at(d, {p.x, p.y, hn::Sub(p.z, onAxis)});
   }
 
  private:
-  SphereKernel<D> ball_;
-  V halfLength_;
+  const PrimitiveKernel& k_;
 };
 
 // The closest point x of an ellipsoid obeys p − x = t x / a², so x = a² p / (a² + t) with
@@ -85,64 +94,52 @@ class EllipsoidKernel {
   using V = hn::Vec<D>;
 
  public:
-  EllipsoidKernel(D d, const PrimitiveKernel& k) {
-    const float least = HWY_MIN(k.half_m[0], HWY_MIN(k.half_m[1], k.half_m[2]));
-    least_ = hn::Set(d, 1e-6f * least);
-    leastDen_ = hn::Set(d, 1e-7f * least * least);
-    half_ = {hn::Set(d, k.half_m[0]), hn::Set(d, k.half_m[1]), hn::Set(d, k.half_m[2])};
-    square_ = {hn::Mul(half_.x, half_.x), hn::Mul(half_.y, half_.y), hn::Mul(half_.z, half_.z)};
-    inverse_ = {hn::Set(d, 1 / k.half_m[0]), hn::Set(d, 1 / k.half_m[1]),
-                hn::Set(d, 1 / k.half_m[2])};
-  }
-
+  explicit EllipsoidKernel(const PrimitiveKernel& k) : k_(k) {}
   HWY_INLINE FieldValue<V> at(D d, const Vector3<V>& p) const {
     // Off the symmetry planes by a hair: there the normal would be 0 / 0 beyond the focal curves.
-    const Vector3<V> m = {hn::Max(hn::Abs(p.x), least_), hn::Max(hn::Abs(p.y), least_),
-                          hn::Max(hn::Abs(p.z), least_)};
-    const Vector3<V> c = {hn::Mul(m.x, half_.x), hn::Mul(m.y, half_.y), hn::Mul(m.z, half_.z)};
-    V t = firstGuess(d, m, c);
-    const V low =
-        hn::Max(hn::Sub(c.x, square_.x), hn::Max(hn::Sub(c.y, square_.y), hn::Sub(c.z, square_.z)));
-    t = hn::Max(t, low);
-    for (int i = 0; i < 2; ++i) t = hn::Max(newton(d, c, t), low);
-    const Vector3<V> r = reciprocals(d, t);
-    Vector3<V> n = {hn::Mul(m.x, r.x), hn::Mul(m.y, r.y), hn::Mul(m.z, r.z)};
-    n = scaled(n, hn::Div(hn::Set(d, 1.0f), hn::Sqrt(dot(n, n))));
-    const Vector3<V> s = {hn::Mul(n.x, half_.x), hn::Mul(n.y, half_.y), hn::Mul(n.z, half_.z)};
+    const V hair = hn::Set(d, 1e-6f * k_.least_m);
+    const Vector3<V> a = constants(d, k_.half_m), square = constants(d, k_.square_m2);
     const Vector3<V> magnitude = {hn::Abs(p.x), hn::Abs(p.y), hn::Abs(p.z)};
+    const Vector3<V> m = {hn::Max(magnitude.x, hair), hn::Max(magnitude.y, hair),
+                          hn::Max(magnitude.z, hair)};
+    const Vector3<V> c = product(m, a);
+    const V low =
+        hn::Max(hn::Sub(c.x, square.x), hn::Max(hn::Sub(c.y, square.y), hn::Sub(c.z, square.z)));
+    V t = hn::Max(firstGuess(d, m), low);
+    for (int i = 0; i < 2; ++i) t = hn::Max(newton(d, c, t), low);
+    Vector3<V> n = product(m, reciprocals(d, t));
+    n = scaled(n, inverseSqrt(d, dot(n, n)));
+    const Vector3<V> s = product(n, a);
     return {hn::Sub(dot(n, magnitude), hn::Sqrt(dot(s, s))), withSigns(n, p)};
   }
 
  private:
   // Distance to the tangent plane at the radial projection, as a value of t.
-  HWY_INLINE V firstGuess(D d, const Vector3<V>& m, const Vector3<V>&) const {
-    const Vector3<V> u = {hn::Mul(m.x, inverse_.x), hn::Mul(m.y, inverse_.y),
-                          hn::Mul(m.z, inverse_.z)};
-    const Vector3<V> g = {hn::Mul(u.x, inverse_.x), hn::Mul(u.y, inverse_.y),
-                          hn::Mul(u.z, inverse_.z)};
+  HWY_INLINE V firstGuess(D d, const Vector3<V>& m) const {
+    const Vector3<V> inverse = constants(d, k_.inverse_per_m);
+    const Vector3<V> u = product(m, inverse), g = product(u, inverse);
     const V gauge2 = dot(u, u);
-    const V excess = hn::Sub(hn::Sqrt(gauge2), hn::Set(d, 1.0f));
-    return hn::Mul(excess, hn::Div(gauge2, dot(g, g)));
+    const V excess = hn::MulSub(gauge2, inverseSqrt(d, gauge2), hn::Set(d, 1.0f));
+    return hn::Mul(excess, hn::Mul(gauge2, reciprocal(d, dot(g, g))));
   }
 
   HWY_INLINE Vector3<V> reciprocals(D d, V t) const {
-    const V one = hn::Set(d, 1.0f);
-    return {hn::Div(one, hn::Max(hn::Add(square_.x, t), leastDen_)),
-            hn::Div(one, hn::Max(hn::Add(square_.y, t), leastDen_)),
-            hn::Div(one, hn::Max(hn::Add(square_.z, t), leastDen_))};
+    const V least = hn::Set(d, 1e-7f * k_.least_m * k_.least_m);
+    const Vector3<V> square = constants(d, k_.square_m2);
+    return {reciprocal(d, hn::Max(hn::Add(square.x, t), least)),
+            reciprocal(d, hn::Max(hn::Add(square.y, t), least)),
+            reciprocal(d, hn::Max(hn::Add(square.z, t), least))};
   }
 
   HWY_INLINE V newton(D d, const Vector3<V>& c, V t) const {
     const Vector3<V> r = reciprocals(d, t);
-    const Vector3<V> s = {hn::Mul(c.x, r.x), hn::Mul(c.y, r.y), hn::Mul(c.z, r.z)};
-    const Vector3<V> s2 = {hn::Mul(s.x, s.x), hn::Mul(s.y, s.y), hn::Mul(s.z, s.z)};
+    const Vector3<V> s = product(c, r), s2 = product(s, s);
     const V sum = hn::Add(s2.x, hn::Add(s2.y, s2.z));
-    const V step = hn::Div(hn::Mul(sum, hn::Sub(hn::Sqrt(sum), hn::Set(d, 1.0f))), dot(s2, r));
-    return hn::Add(t, step);
+    const V excess = hn::MulSub(sum, inverseSqrt(d, sum), hn::Set(d, 1.0f));
+    return hn::MulAdd(hn::Mul(sum, excess), reciprocal(d, dot(s2, r)), t);
   }
 
-  Vector3<V> half_, square_, inverse_;
-  V least_, leastDen_;
+  const PrimitiveKernel& k_;
 };
 
 // The gauge h of a superellipsoid (homogeneous of degree 1, h = 1 on the surface), in logarithms so
@@ -156,14 +153,7 @@ class SuperellipsoidKernel {
   using V = hn::Vec<D>;
 
  public:
-  SuperellipsoidKernel(D d, const PrimitiveKernel& k) {
-    inverse_ = {hn::Set(d, 1 / k.half_m[0]), hn::Set(d, 1 / k.half_m[1]),
-                hn::Set(d, 1 / k.half_m[2])};
-    tiny_ = {hn::Set(d, 1e-9f * k.half_m[0]), hn::Set(d, 1e-9f * k.half_m[1]),
-             hn::Set(d, 1e-9f * k.half_m[2])};
-    eastWest_ = {hn::Set(d, k.eastWestPower), hn::Set(d, 1 / k.eastWestPower)};
-    northSouth_ = {hn::Set(d, k.northSouthPower), hn::Set(d, 1 / k.northSouthPower)};
-  }
+  explicit SuperellipsoidKernel(const PrimitiveKernel& k) : k_(k) {}
 
   HWY_INLINE FieldValue<V> at(D d, const Vector3<V>& p) const {
     const Vector3<V> m = {hn::Abs(p.x), hn::Abs(p.y), hn::Abs(p.z)};
@@ -183,9 +173,6 @@ class SuperellipsoidKernel {
   }
 
  private:
-  struct Power {
-    V value, inverse;
-  };
   struct Norm {
     V log, shareA, shareB;
   };
@@ -195,33 +182,36 @@ class SuperellipsoidKernel {
   };
 
   // log2 of (a^p + b^p)^(1/p) from the logarithms of a and b, and each one's share of the sum.
-  static HWY_INLINE Norm powerNorm(D d, V a, V b, const Power& p) {
+  static HWY_INLINE Norm powerNorm(D d, V a, V b, float power, float root) {
     const V larger = hn::Max(a, b);
-    const V t = exp2Saturating(d, hn::Mul(p.value, hn::Sub(hn::Min(a, b), larger)));
-    const V major = hn::Div(hn::Set(d, 1.0f), hn::Add(hn::Set(d, 1.0f), t));
+    const V t = exp2Saturating(d, hn::Mul(hn::Set(d, power), hn::Sub(hn::Min(a, b), larger)));
+    const V major = reciprocal(d, hn::Add(hn::Set(d, 1.0f), t));
     const V minor = hn::Mul(t, major);
     const auto aLeads = hn::Ge(a, b);
-    return {hn::MulAdd(p.inverse, log2OnePlus(d, t), larger), hn::IfThenElse(aLeads, major, minor),
-            hn::IfThenElse(aLeads, minor, major)};
+    return {hn::MulAdd(hn::Set(d, root), log2OnePlus(d, t), larger),
+            hn::IfThenElse(aLeads, major, minor), hn::IfThenElse(aLeads, minor, major)};
   }
 
   HWY_INLINE Plane tangentPlane(D d, const Vector3<V>& m) const {
-    const Vector3<V> p = {hn::Max(m.x, tiny_.x), hn::Max(m.y, tiny_.y), hn::Max(m.z, tiny_.z)};
-    const V lx = log2Positive(d, hn::Mul(p.x, inverse_.x));
-    const V ly = log2Positive(d, hn::Mul(p.y, inverse_.y));
-    const V lz = log2Positive(d, hn::Mul(p.z, inverse_.z));
-    const Norm lateral = powerNorm(d, lx, ly, eastWest_);
-    const Norm whole = powerNorm(d, lateral.log, lz, northSouth_);
-    const Vector3<V> slope = {hn::Div(hn::Mul(whole.shareA, lateral.shareA), p.x),
-                              hn::Div(hn::Mul(whole.shareA, lateral.shareB), p.y),
-                              hn::Div(whole.shareB, p.z)};
-    const V inverseLength = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(dot(slope, slope)));
+    const V tiny = hn::Set(d, 1e-9f);
+    const Vector3<V> inverse = constants(d, k_.inverse_per_m);
+    const Vector3<V> u = {hn::Max(hn::Mul(m.x, inverse.x), tiny),
+                          hn::Max(hn::Mul(m.y, inverse.y), tiny),
+                          hn::Max(hn::Mul(m.z, inverse.z), tiny)};
+    const Norm lateral =
+        powerNorm(d, log2Positive(d, u.x), log2Positive(d, u.y), k_.eastWestPower, k_.eastWestRoot);
+    const Norm whole =
+        powerNorm(d, lateral.log, log2Positive(d, u.z), k_.northSouthPower, k_.northSouthRoot);
+    const Vector3<V> share = {hn::Mul(whole.shareA, lateral.shareA),
+                              hn::Mul(whole.shareA, lateral.shareB), whole.shareB};
+    const Vector3<V> overU = {reciprocal(d, u.x), reciprocal(d, u.y), reciprocal(d, u.z)};
+    const Vector3<V> slope = product(product(share, overU), inverse);
+    const V inverseLength = inverseSqrt(d, dot(slope, slope));
     const V inverseGauge = exp2Saturating(d, hn::Neg(whole.log));
     return {scaled(slope, inverseLength), hn::Mul(inverseLength, inverseGauge)};
   }
 
-  Vector3<V> inverse_, tiny_;
-  Power eastWest_, northSouth_;
+  const PrimitiveKernel& k_;
 };
 
 }  // namespace fascia::HWY_NAMESPACE

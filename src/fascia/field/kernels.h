@@ -19,6 +19,10 @@ struct PrimitiveKernel {
   float halfLength_m = 0;       // capsule: of its axis
   float northSouthPower = 2;    // 2 / e1 (Barr 1981), in [1, 20]
   float eastWestPower = 2;      // 2 / e2
+  // From the above, for ellipsoids and superellipsoids:
+  float square_m2[3] = {1, 1, 1}, inverse_per_m[3] = {1, 1, 1};
+  float least_m = 1;                                 // half size
+  float northSouthRoot = 0.5f, eastWestRoot = 0.5f;  // 1 / power
 };
 
 // One of Barr's (1984) deformations over the z interval [-zHalf_m, zHalf_m]; see deformations/.

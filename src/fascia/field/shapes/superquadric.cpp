@@ -52,9 +52,16 @@ PrimitiveKernel kernel(const Superquadric& s) {
   PrimitiveKernel k;
   const bool ellipsoid = s.northSouth_e1 == 1 && s.eastWest_e2 == 1;
   k.kind = ellipsoid ? PrimitiveKernel::Kind::ellipsoid : PrimitiveKernel::Kind::superellipsoid;
-  for (int i = 0; i < 3; ++i) k.half_m[i] = static_cast<float>(s.half_m[i]);
+  for (int i = 0; i < 3; ++i) {
+    k.half_m[i] = static_cast<float>(s.half_m[i]);
+    k.square_m2[i] = k.half_m[i] * k.half_m[i];
+    k.inverse_per_m[i] = 1 / k.half_m[i];
+  }
+  k.least_m = static_cast<float>(s.half_m.minCoeff());
   k.northSouthPower = static_cast<float>(2 / s.northSouth_e1);
   k.eastWestPower = static_cast<float>(2 / s.eastWest_e2);
+  k.northSouthRoot = 1 / k.northSouthPower;
+  k.eastWestRoot = 1 / k.eastWestPower;
   return k;
 }
 
