@@ -8,7 +8,6 @@
 namespace fascia {
 namespace {
 
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -98,6 +97,15 @@ TEST(FleshValidation, RefusesBadDriverPoints) {
   EXPECT_THAT(withPoints({{0, kNaN}, {1, 0.2}}), ElementsAre("/solids/1/drivers/0/points/0"));
   EXPECT_THAT(withPoints({{0, 0.1}, {kInfinity, 0.2}}),
               ElementsAre("/solids/1/drivers/0/points/1"));
+}
+
+TEST(FleshValidation, BrokenSkeletonIsReportedOnceNotForEverySolid) {
+  SkeletonDef broken = test::armSkeleton();
+  broken.joints[1].parent = "nobody";
+  Diagnostics diagnostics;
+  const Skeleton skeleton(broken, "/skeleton", diagnostics);
+  const Flesh flesh(test::armFlesh(), skeleton, "/solids", diagnostics);
+  EXPECT_THAT(pointers(diagnostics.errors()), ElementsAre("/skeleton/1/parent"));
 }
 
 TEST(FleshValidation, RefusesDriversOnOrnaments) {

@@ -112,6 +112,12 @@ TEST(MotionValidation, RefusesTwoTracksForOneNumber) {
   EXPECT_THAT(errorPointers(motion), ElementsAre("/motions/3/tracks/2"));
 }
 
+TEST(MotionValidation, RefusesMoreTracksThanAFigureHasNumbers) {
+  MotionDef motion = goodMotion();
+  motion.tracks.resize(kMostTracks + 1);
+  EXPECT_THAT(errorPointers(motion), ElementsAre("/motions/3/tracks"));
+}
+
 TEST(MotionValidation, WarnsOfKeysThatAreNeverReached) {
   MotionDef motion = goodMotion();
   motion.loop = false;

@@ -82,7 +82,7 @@ BoundClip bindMotion(const MotionDef& motion, const Skeleton& skeleton, const Fl
   clip.name = motion.name;
   clip.duration_s = playedDuration_s(motion);
   clip.loop = motion.loop;
-  for (std::size_t i = 0; i < motion.tracks.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(motion.tracks.size(), kMostTracks); ++i) {
     bindTrack(motion.tracks[i], skeleton, flesh, ornaments,
               pointer + "/tracks/" + std::to_string(i), diagnostics,
               clip.loop ? clip.duration_s : 0, clip);

@@ -127,7 +127,13 @@ void validateMotion(const MotionDef& motion, const std::string& pointer, Diagnos
   if (!inRange(motion.duration_s, 0, kLargestNumber)) {
     diagnostics.error(pointer + "/duration_s", "found " + shortNumber(motion.duration_s) +
                                                    ", expected a number in [0, 1e6]");
-    return;  // nothing about loops can be said
+    return;  // nothing can be said about loops
+  }
+  if (motion.tracks.size() > kMostTracks) {
+    diagnostics.error(pointer + "/tracks", "found " + std::to_string(motion.tracks.size()) +
+                                               " tracks, expected at most " +
+                                               std::to_string(kMostTracks));
+    return;
   }
   if (motion.loop && !(playedDuration_s(motion) >= kShortestLoop_s)) {
     diagnostics.error(pointer + "/duration_s", "a loop needs a duration of at least 1 ms",

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -27,13 +27,16 @@ struct TrackDef {
 
 struct MotionDef {
   std::string name;
-  double duration_s = 0;  // [0, 1e6]; 0 = the last key's time
-  bool loop = false;      // repeats every duration; tangents wrap. See KeySpline.
-  std::vector<TrackDef> tracks;
+  double duration_s = 0;         // [0, 1e6]; 0 = the last key's time
+  bool loop = false;             // repeats every duration; tangents wrap. See KeySpline.
+  std::vector<TrackDef> tracks;  // at most kMostTracks
 };
 
 // The duration that a motion plays for: its own, or the last key's time.
 double playedDuration_s(const MotionDef& motion);
+
+// More than any figure has numbers to animate; bounds what a hostile file can cost.
+inline constexpr std::size_t kMostTracks = 8192;
 
 // Reports everything that is wrong with a motion by itself; whether its joints and solids exist is
 // for bindMotion (flesh/bind.h) to say. Pointers start with `pointer`, e.g. "/motions/0".
