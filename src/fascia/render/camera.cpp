@@ -6,7 +6,7 @@
 namespace fascia {
 namespace {
 
-constexpr double kMargin = 1.12;  // smaller crops moving limbs, larger wastes the picture
+constexpr double kMargin = 1.06;  // smaller crops moving limbs, larger wastes the picture
 
 Vec3 directionFrom(const CameraSpec& spec) {
   const double e = spec.elevation_rad, a = spec.azimuth_rad;

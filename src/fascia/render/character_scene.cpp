@@ -113,9 +113,8 @@ void addBones(const Character& character, const CharacterState& state, bool insi
 // The lights stand around the photographer, so that every view is well lit.
 float studioAzimuth(const Camera& camera) {
   const Vec3 back = camera.eye_m - camera.target_m;
-  return back.head<1>().norm() + std::abs(back.z()) > 1e-9
-             ? static_cast<float>(std::atan2(back.x(), back.z()))
-             : 0.f;
+  // Straight from above, atan2(0, 0) = 0: as from the front.
+  return static_cast<float>(std::atan2(back.x(), back.z()));
 }
 
 }  // namespace

@@ -140,12 +140,12 @@ void BeautyPass::drawLit(const Frame& frame, const OcclusionPass& occlusion, con
   item.mesh->draw();
 }
 
-void BeautyPass::drawOpaque(const Frame& frame, const OcclusionPass& occlusion) {
-  // The floor last: most of it is hidden behind what stands on it.
-  for (const bool ground : {false, true})
+void BeautyPass::drawOpaque(const Frame& frame, const OcclusionPass& occlusion,
+                            std::initializer_list<Material::Kind> kinds) {
+  for (const auto kind : kinds)
     for (const DrawItem& item : frame.items) {
-      if (item.seeThrough() || (item.material().kind == Material::Kind::ground) != ground) continue;
-      if (ground) glEnable(GL_CULL_FACE);  // no floor when seen from below
+      if (item.seeThrough() || item.material().kind != kind) continue;
+      if (kind == Material::Kind::ground) glEnable(GL_CULL_FACE);  // no floor seen from below
       drawLit(frame, occlusion, item);
       glDisable(GL_CULL_FACE);
     }
@@ -217,8 +217,11 @@ void BeautyPass::draw(const Frame& frame, const OcclusionPass& occlusion) {
   glViewport(0, 0, width_, height_);
   glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   drawBackground(frame);
-  drawOpaque(frame, occlusion);
-  drawHidden(frame, occlusion);
+  using Kind = Material::Kind;
+  drawOpaque(frame, occlusion, {Kind::skin, Kind::muscle, Kind::bone});
+  drawHidden(frame, occlusion);  // through those, but not through eyes or the floor
+  // The floor last: most of it is hidden behind what stands on it.
+  drawOpaque(frame, occlusion, {Kind::plain, Kind::ground});
   for (const auto kind :
        {Material::Kind::bone, Material::Kind::muscle, Material::Kind::plain, Material::Kind::skin})
     drawSeeThrough(frame, occlusion, kind);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <memory>
 
 #include <fascia/render/gl/frame.h>
@@ -18,7 +19,8 @@ class BeautyPass {
  private:
   void resize(int width, int height);
   void drawBackground(const Frame& frame);
-  void drawOpaque(const Frame& frame, const OcclusionPass& occlusion);
+  void drawOpaque(const Frame& frame, const OcclusionPass& occlusion,
+                  std::initializer_list<Material::Kind> kinds);
   void drawSeeThrough(const Frame& frame, const OcclusionPass& occlusion, Material::Kind kind);
   void drawHidden(const Frame& frame, const OcclusionPass& occlusion);
   void drawDepth(const Frame& frame, Material::Kind kind);

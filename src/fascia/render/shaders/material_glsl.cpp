@@ -113,6 +113,7 @@ void main() {
   vec3 c = radiance(n, v, occlusionHere(position_world));
   float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 2.5);
   float alpha = opacity < 1.0 ? mix(opacity, 1.0, 0.9 * rim) : 1.0;
+  if (opacity < 1.0) c *= 1.0 - 0.45 * rim;  // a veil's outline reads on any backdrop
   if (ghost > 0.0) alpha = ghost * (1.0 - 0.5 * rim);
   result = vec4(dither(srgbFromLinear(toneMap(c))), alpha);
 }

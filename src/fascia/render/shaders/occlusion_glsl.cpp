@@ -44,9 +44,12 @@ vec2 disc(int i, int count, float turn) {
 float openness(vec3 p, vec3 n, float turn) {
   float radius_uv = 0.5 * occlusionRadius_m / (p.z * -tanHalfFov.y);
   vec2 scale = min(radius_uv, 0.35) * vec2(tanHalfFov.y / tanHalfFov.x, 1.0);
+  vec2 size = vec2(textureSize(geometry, 0));
   float r2 = occlusionRadius_m * occlusionRadius_m, sum = 0.0;
   for (int i = 0; i < kOcclusionTaps; ++i) {
+    // On the texel's middle, where its depth was taken: floors seen flatly would shade themselves.
     vec2 at = screen + disc(i, kOcclusionTaps, turn) * scale;
+    at = (floor(at * size) + 0.5) / size;
     float depth = texture(geometry, at).a;
     if (depth <= 0.0) continue;
     vec3 v = viewPosition(at, depth) - p;
