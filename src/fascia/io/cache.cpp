@@ -1,0 +1,175 @@
+#include <fascia/io/cache.h>
+
+#include <cmath>
+
+#include <fascia/io/byte_stream.h>
+#include <fascia/io/character_file.h>
+#include <fascia/io/file.h>
+
+namespace fascia {
+namespace {
+
+// Layout, little-endian: magic, u32 version; texts (u64 length, bytes): character file, texture,
+// motion; rate, loop; the mesh; per frame time, posture, positions as float32; stats.
+constexpr std::string_view kMagic("FCACHE\x1a\n", 8);
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kMaxFileBytes = std::size_t{8} << 30;
+
+template <class T>
+void writeArray(ByteWriter& out, const std::vector<T>& values) {
+  out.value(static_cast<std::uint64_t>(values.size()));
+  out.array(values.data(), values.size());
+}
+
+template <class T>
+void readArray(ByteReader& in, std::vector<T>& values) {
+  in.array(values, in.value<std::uint64_t>());
+}
+
+template <class Vector>
+void checkFinite(const ByteReader& in, const std::vector<Vector>& values) {
+  for (const Vector& v : values) {
+    if (!v.allFinite()) in.fail("holds a value that is not a finite number");
+  }
+}
+
+void checkFinite(const ByteReader& in, double value) {
+  if (!std::isfinite(value)) in.fail("holds a value that is not a finite number");
+}
+
+void writeMesh(ByteWriter& out, const TriangleMesh& mesh) {
+  writeArray(out, mesh.positions);
+  writeArray(out, mesh.normals);
+  writeArray(out, mesh.uvs);
+  writeArray(out, mesh.triangles);
+}
+
+TriangleMesh readMesh(ByteReader& in) {
+  TriangleMesh mesh;
+  readArray(in, mesh.positions);
+  readArray(in, mesh.normals);
+  readArray(in, mesh.uvs);
+  readArray(in, mesh.triangles);
+  const std::size_t count = mesh.positions.size();
+  const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
+  if (!fits(mesh.normals.size()) || !fits(mesh.uvs.size())) in.fail("has a mesh of unequal parts");
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      if (v >= count) in.fail("has a triangle that points nowhere");
+    }
+  }
+  checkFinite(in, mesh.positions);
+  checkFinite(in, mesh.normals);
+  checkFinite(in, mesh.uvs);
+  return mesh;
+}
+
+template <class Stats, class Visit>
+void eachStat(Stats& s, const Visit& visit) {
+  visit(s.steps), visit(s.rejected_steps), visit(s.step_min_s), visit(s.step_max_s);
+  visit(s.forces_s), visit(s.constraints_s), visit(s.other_s), visit(s.max_penetration_m);
+  visit(s.max_edge_stretch), visit(s.repaired_points);
+}
+
+std::size_t valueCount(const CharacterDef& def) {
+  std::size_t count = 0;
+  for (const JointDef& joint : def.skeleton.joints) count += joint.dofs.size();
+  return count;
+}
+
+Recording::Frame readFrame(ByteReader& in, std::size_t postureSize, std::size_t vertices) {
+  Recording::Frame frame;
+  frame.time_s = in.value<double>();
+  checkFinite(in, frame.time_s);
+  in.array(frame.posture, postureSize);
+  for (const double value : frame.posture) checkFinite(in, value);
+  if (in.value<std::uint8_t>() != 0) in.array(frame.skin_m, vertices);
+  checkFinite(in, frame.skin_m);
+  return frame;
+}
+
+}  // namespace
+
+bool isCache(std::string_view bytes) {
+  return bytes.starts_with(kMagic);
+}
+
+void writeCache(const CharacterDef& def, const Recording& recording, const std::string& path,
+                const Texture* texture) {
+  const std::size_t postureSize = valueCount(def);
+  ByteWriter head;
+  head.bytes = kMagic;
+  head.value(kVersion);
+  head.text(characterText(def));
+  head.text(texture ? texture->bytes : loadTexture(def).bytes);
+  head.text(recording.motion);
+  head.value(recording.frame_rate_hz);
+  head.value(static_cast<std::uint8_t>(recording.loop));
+  writeMesh(head, recording.skin);
+  head.value(static_cast<std::uint64_t>(recording.frames.size()));
+  WholeFile file(path);
+  file.write(head.bytes);
+  for (const Recording::Frame& frame : recording.frames) {
+    const bool skin = !frame.skin_m.empty();
+    if (frame.posture.size() != postureSize ||
+        (skin && frame.skin_m.size() != recording.skin.positions.size())) {
+      throw Error("the recording is not of this character");
+    }
+    ByteWriter out;
+    out.value(frame.time_s);
+    out.array(frame.posture.data(), frame.posture.size());
+    out.value(static_cast<std::uint8_t>(skin));
+    out.array(frame.skin_m.data(), frame.skin_m.size());
+    file.write(out.bytes);
+  }
+  ByteWriter tail;
+  eachStat(recording.stats, [&](const auto& value) { tail.value(value); });
+  tail.value(recording.wall_s);
+  tail.value(recording.simulated_s);
+  tail.value(recording.state_hash);
+  file.write(tail.bytes);
+  file.commit();
+}
+
+Cache parseCache(std::string_view bytes, const std::string& file) {
+  ByteReader in(bytes, file);
+  if (!isCache(bytes)) in.fail("is not a Fascia cache");
+  in.take(kMagic.size());
+  const auto version = in.value<std::uint32_t>();
+  if (version != kVersion) {
+    in.fail("has cache format " + std::to_string(version) + ", this program reads format " +
+            std::to_string(kVersion));
+  }
+  Cache cache;
+  cache.def = readCharacterText(in.text(), file).def;
+  cache.texture.bytes = in.text();
+  if (!cache.texture.empty() && imageFormat(cache.texture.bytes) == ImageFormat::unknown) {
+    in.fail("has a texture that is neither a PNG nor a JPEG");
+  }
+  Recording& recording = cache.recording;
+  recording.motion = in.text();
+  recording.frame_rate_hz = in.value<double>();
+  if (!(recording.frame_rate_hz > 0 && recording.frame_rate_hz <= 1e6)) {
+    in.fail("has a frame rate out of range");
+  }
+  recording.loop = in.value<std::uint8_t>() != 0;
+  recording.skin = readMesh(in);
+  const auto frames = in.value<std::uint64_t>();
+  const std::size_t postureSize = valueCount(cache.def);
+  for (std::uint64_t f = 0; f < frames; ++f) {
+    recording.frames.push_back(readFrame(in, postureSize, recording.skin.positions.size()));
+  }
+  eachStat(recording.stats,
+           [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });
+  recording.wall_s = in.value<double>();
+  recording.simulated_s = in.value<double>();
+  recording.state_hash = in.value<std::uint64_t>();
+  if (in.left() > 0) in.fail("has bytes after its end");
+  return cache;
+}
+
+Cache readCache(const std::string& path) {
+  return parseCache(readFile(path, kMaxFileBytes), path);
+}
+
+}  // namespace fascia

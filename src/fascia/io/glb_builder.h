@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <Eigen/Core>
+
+namespace fascia {
+
+// Collects a binary glTF 2.0: the JSON tree and the bytes that its accessors point into.
+class GlbBuilder {
+ public:
+  using Json = nlohmann::ordered_json;
+  enum class Target { none = 0, vertices = 34962, indices = 34963 };
+
+  GlbBuilder();
+
+  Json root;
+
+  // Each returns the new thing's index.
+  std::size_t add(const char* list, Json value);
+  std::size_t addImage(const std::string& bytes, const char* mimeType);
+  std::size_t addVectors(std::span<const Eigen::Vector3f> values, bool withBounds, Target target);
+  std::size_t addUvs(std::span<const Eigen::Vector2f> values);
+  std::size_t addIndices(std::span<const std::uint32_t> indices, std::size_t vertexCount);
+  std::size_t addScalars(std::span<const float> values, bool withBounds);
+  std::size_t addQuaternions(std::span<const Eigen::Vector4f> values);  // x, y, z, w
+  // Mostly zero vectors: only the others are stored, where that is smaller.
+  std::size_t addSparseVectors(std::span<const Eigen::Vector3f> values, bool withBounds);
+
+  // The whole file. Throws Error beyond 4 GiB, which the format cannot hold.
+  std::string finish();
+
+ private:
+  std::size_t addView(const void* data, std::size_t bytes, Target target);
+  std::size_t addAccessor(std::size_t view, int componentType, std::size_t count, const char* type);
+  Json& accessor(std::size_t index) { return root["accessors"][index]; }
+  std::size_t addPackedIndices(std::span<const std::uint32_t> indices, bool small, Target target);
+
+  std::string bytes_;
+};
+
+}  // namespace fascia
