@@ -1,5 +1,7 @@
 #include <fascia/field/kernels.h>
 
+#include <cstring>
+
 // SSE4, AVX2 and AVX-512 besides the baseline: more targets cost compile time, and gain nothing.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -56,23 +58,15 @@ HWY_INLINE FieldValue<Vector> deformedAt(Tag d, const SolidKernel& solid, Vector
   return {hn::Mul(value.distance_m, inverse), scaled(value.normal, inverse)};
 }
 
-// Deformed solids apart: their constants would otherwise be made ready in every call.
+// Whole vectors only. Deformed solids apart: their constants would otherwise be made ready in every
+// call.
 template <class Primitive, bool kDeformed>
-void evaluateWith(const SolidKernel& solid, const KernelFrame& frame, ConstVectors p,
-                  float* distance_m, Vectors normal) {
+HWY_NOINLINE void evaluateWhole(const SolidKernel& solid, const KernelFrame& frame, ConstVectors p,
+                                float* distance_m, Vectors normal) {
   const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  // The last vector, if it is not full, goes through these: nothing beyond p.count is touched.
-  HWY_ALIGN float in[3][kMaxLanes] = {}, out[4][kMaxLanes];
-  for (std::size_t i = 0; i < p.count; i += lanes) {
-    const std::size_t here = HWY_MIN(lanes, p.count - i);
-    const bool full = here == lanes;
-    for (std::size_t k = 0; !full && k < here; ++k) {
-      in[0][k] = p.x[i + k], in[1][k] = p.y[i + k], in[2][k] = p.z[i + k];
-    }
-    const Vector3<Vector> world = {hn::LoadU(d, full ? p.x + i : in[0]),
-                                   hn::LoadU(d, full ? p.y + i : in[1]),
-                                   hn::LoadU(d, full ? p.z + i : in[2])};
+  for (std::size_t i = 0; i < p.count; i += hn::Lanes(d)) {
+    const Vector3<Vector> world = {hn::LoadU(d, p.x + i), hn::LoadU(d, p.y + i),
+                                   hn::LoadU(d, p.z + i)};
     const Vector3<Vector> local = toLocal(d, frame, world);
     FieldValue<Vector> value;
     if constexpr (kDeformed) {
@@ -81,15 +75,40 @@ void evaluateWith(const SolidKernel& solid, const KernelFrame& frame, ConstVecto
       value = Primitive(solid.primitive).at(d, local);
     }
     const Vector3<Vector> n = toWorld(d, frame, value.normal);
-    hn::StoreU(value.distance_m, d, full ? distance_m + i : out[0]);
-    hn::StoreU(n.x, d, full ? normal.x + i : out[1]);
-    hn::StoreU(n.y, d, full ? normal.y + i : out[2]);
-    hn::StoreU(n.z, d, full ? normal.z + i : out[3]);
-    for (std::size_t k = 0; !full && k < here; ++k) {
-      distance_m[i + k] = out[0][k];
-      normal.x[i + k] = out[1][k], normal.y[i + k] = out[2][k], normal.z[i + k] = out[3][k];
-    }
+    hn::StoreU(value.distance_m, d, distance_m + i);
+    hn::StoreU(n.x, d, normal.x + i);
+    hn::StoreU(n.y, d, normal.y + i);
+    hn::StoreU(n.z, d, normal.z + i);
   }
+}
+
+// The points that do not fill a vector, by way of one that is full.
+template <class Primitive, bool kDeformed>
+HWY_NOINLINE void evaluateRest(const SolidKernel& solid, const KernelFrame& frame, ConstVectors p,
+                               float* distance_m, Vectors normal) {
+  HWY_ALIGN float in[3][kMaxLanes] = {}, out[4][kMaxLanes];
+  const std::size_t bytes = p.count * sizeof(float);
+  std::memcpy(in[0], p.x, bytes);
+  std::memcpy(in[1], p.y, bytes);
+  std::memcpy(in[2], p.z, bytes);
+  const std::size_t lanes = hn::Lanes(Tag());
+  evaluateWhole<Primitive, kDeformed>(solid, frame, {in[0], in[1], in[2], lanes}, out[0],
+                                      {out[1], out[2], out[3], lanes});
+  std::memcpy(distance_m, out[0], bytes);
+  std::memcpy(normal.x, out[1], bytes);
+  std::memcpy(normal.y, out[2], bytes);
+  std::memcpy(normal.z, out[3], bytes);
+}
+
+template <class Primitive, bool kDeformed>
+void evaluateWith(const SolidKernel& solid, const KernelFrame& frame, ConstVectors p,
+                  float* distance_m, Vectors normal) {
+  const std::size_t rest = p.count % hn::Lanes(Tag()), whole = p.count - rest;
+  evaluateWhole<Primitive, kDeformed>(solid, frame, {p.x, p.y, p.z, whole}, distance_m, normal);
+  if (rest == 0) return;
+  evaluateRest<Primitive, kDeformed>(solid, frame, {p.x + whole, p.y + whole, p.z + whole, rest},
+                                     distance_m + whole,
+                                     {normal.x + whole, normal.y + whole, normal.z + whole, rest});
 }
 
 template <class Primitive>
