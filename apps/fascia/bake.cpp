@@ -67,6 +67,10 @@ void addBake(CLI::App& program, Console& console) {
       ->required()
       ->check(endsIn({".glb", ".pc2", ".fcache"}));
   command.add_option("--stats", options->stats, "Write how the simulation went to this JSON file");
+  command
+      .add_option("--fps", options->simulation.frame_rate_hz,
+                  "Frames per second (default: as in the file)")
+      ->check(CLI::Range(1.0, 1000.0));
   options->simulation.addTo(command);
   console.addFlags(command);
   command.footer(kFooter);

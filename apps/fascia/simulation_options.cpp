@@ -24,8 +24,6 @@ const std::vector<std::string>& integratorNames() {
 
 void SimulationOptions::addTo(CLI::App& command) {
   command.add_option("--motion", motion, "Motion to simulate, by name (default: the first)");
-  command.add_option("--fps", frame_rate_hz, "Frames per second (default: as in the file)")
-      ->check(CLI::Range(1.0, 1000.0));
   command.add_option("--duration", duration_s, "Seconds to simulate (default: the motion's)")
       ->check(CLI::Range(1e-3, 86400.0));
   command.add_option("--grid", grid, "Skin points around x along, such as 64x16")

@@ -19,7 +19,7 @@ struct SimulationOptions {
   std::string grid;          // "COLUMNSxROWS"; empty = as in the file
   int threads = 0;           // 0 = all the machine has
 
-  void addTo(CLI::App& command);
+  void addTo(CLI::App& command);  // all but the frame rate, which commands name differently
   BuildOptions buildOptions() const;
   RecordOptions recordOptions(const Character& character) const;
 };

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <fascia/character/character.h>
+#include <fascia/character/recording.h>
+#include <fascia/io/welded_normals.h>
+
+namespace fascia {
+
+// Shows a recording again: the character's layers and its skin at any recorded moment, without
+// simulating. Both must outlive it.
+class Player {
+ public:
+  Player(const Character& character, const Recording& recording);
+
+  // Goes to the frame closest to a time. Throws Error if the time lies outside of the recording.
+  void seek(double time_s);
+
+  const CharacterState& state() const { return state_; }  // skeleton, flesh, ornaments only
+  const TriangleMesh& skin() const { return skin_; }      // with normals; may be empty
+
+ private:
+  const Character& character_;
+  const Recording& recording_;
+  int motion_;
+  CharacterState state_;
+  TriangleMesh skin_;
+  WeldedNormals normals_;
+};
+
+// Everything that flesh and ornaments reach in the course of a motion (-1: the rest posture). It
+// does not depend on what part of it is simulated: a camera that frames it shows a picture, a video
+// and a cache from the same place.
+Box motionReach(const Character& character, int motion);
+
+}  // namespace fascia
