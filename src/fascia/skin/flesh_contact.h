@@ -4,16 +4,10 @@
 
 #include <fascia/base/aligned.h>
 #include <fascia/field/field.h>
+#include <fascia/skin/point_kernels.h>
 #include <fascia/skin/point_model.h>
 
 namespace fascia {
-
-// Runs of consecutive points in storage order, the unit in which points are tested against solids.
-struct PointBlock {
-  static constexpr std::size_t kCapacity = 16;  // the widest vector
-  std::size_t first;
-  std::uint32_t count;
-};
 
 // Non-penetration of skin and flesh (spec L10, L11): every point, moved inward by its fat along the
 // skin's normal, stays outside of every solid. Works on blocks of points and knows nothing of how
@@ -43,11 +37,10 @@ class FleshContact {
 
  private:
   static constexpr int kPasses = 8;
-  struct Task;
   std::vector<PointBlock> blocks_;
   std::vector<Result> results_;
   std::vector<Box> boxes_;
-  std::vector<std::int32_t> nearbySolids_;  // per task: as many as there are solids
+  std::vector<std::int32_t> nearby_;  // per task: as many as there are solids
 };
 
 }  // namespace fascia

@@ -199,7 +199,7 @@ class SkinBuilder {
     }
     const double spacing = (top.center_m - bottom.center_m).norm() / skin_.layout_.rows;
     for (int e = 0; e < 2; ++e) {
-      rings[e]->radius_m = ends[e]->radius_m > 0 ? ends[e]->radius_m : 0.25 * spacing;
+      rings[e]->radius_m = ends[e]->radius_m > 0 ? ends[e]->radius_m : 0.7 * spacing;
       if (rings[e]->radius_m > 1e-6) continue;
       error(e == 0 ? "/bottom" : "/top", "found both ends of the skin in the same place",
             "fix the ends to different joints, or give them different axes");

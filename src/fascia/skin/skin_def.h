@@ -41,7 +41,7 @@ struct SkinEndDef {
   Vec3 position_m = Vec3::Zero();  // in the joint's frame; the ring's centre lies on the flesh
                                    // surface on the ray from here along axis
   Vec3 axis = Vec3::Zero();        // in the joint's frame; zero = away from the other end
-  double radius_m = 0;             // of the ring; 0 = a quarter of a row's spacing
+  double radius_m = 0;             // of the ring; 0 = 0.7 of the spacing of rows
 };
 
 // The named per-point quantities that region edits and brushes change.
@@ -102,7 +102,7 @@ struct SkinPointsDef {
 };
 
 struct SkinDef {
-  int columns = 64, rows = 16;  // [8, 4096] each; columns go around, rows from bottom to top
+  int columns = 32, rows = 32;  // [8, 4096] each; columns go around, rows from bottom to top
   SkinEndDef bottom, top;
   SkinMaterialDef material;
   SkinFatDef fat;

@@ -36,6 +36,17 @@ class Stopwatch {
 
 constexpr FloatArray VectorArray::*kAxes[3] = {&VectorArray::x, &VectorArray::y, &VectorArray::z};
 
+bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anchorVelocity,
+              float fastest, std::size_t k) {
+  float speed = 0, place = 0;
+  for (const auto axis : kAxes) {
+    const float relative = (v.*axis)[k] - (anchorVelocity.*axis)[k];
+    speed += relative * relative;
+    place += (r.*axis)[k] * (r.*axis)[k];
+  }
+  return !(speed < fastest * fastest && place < 1e18f);
+}
+
 }  // namespace
 
 SkinStepper::SkinStepper(const Skin& skin)
@@ -96,35 +107,17 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
   PointSurroundings& around = state.surroundings;
   skin_->anchors().place(*pose.field, scratch_, nextAnchor_);
   const auto rate = static_cast<float>(1 / duration_s);
+  const float way = followAnchors(around.anchor, nextAnchor_, rate,
+                                  ode_ ? nullptr : &coefficients_.carried, around.anchorVelocity,
+                                  state.velocity);
   const auto jump = static_cast<float>(kJump * skin_->size_m());
-  bool jumped = false;
-  for (const TissueAnchors::Anchor& a : skin_->anchors().anchors()) {
-    const std::size_t k = a.point;
-    float distance = 0;
-    for (const auto axis : kAxes) {
-      const float d = (nextAnchor_.*axis)[k] - (around.anchor.*axis)[k];
-      distance += d * d;
-    }
-    jumped |= !(distance < jump * jump);
-  }
-  if (jumped) {
+  if (!(way < jump * jump)) {
     // A posture jump: the skin jumps with the flesh and starts anew from there.
     carrySkin(*skin_, pose, state);
     around.anchor = nextAnchor_;
-    for (const auto axis : kAxes) {
-      std::fill((around.normal.*axis).begin(), (around.normal.*axis).end(), 0.f);
-      std::fill((around.anchorVelocity.*axis).begin(), (around.anchorVelocity.*axis).end(), 0.f);
-    }
+    around.anchorVelocity.fill(0.f);
+    around.normal.fill(0.f);
     stats.repaired_points += skin_->pointCount();
-  }
-  for (const TissueAnchors::Anchor& a : skin_->anchors().anchors()) {
-    const std::size_t k = a.point;
-    for (const auto axis : kAxes) {
-      float& velocity = (around.anchorVelocity.*axis)[k];
-      const float next = ((nextAnchor_.*axis)[k] - (around.anchor.*axis)[k]) * rate;
-      if (!ode_) (state.velocity.*axis)[k] += coefficients_.carried[k] * (next - velocity);
-      velocity = next;
-    }
   }
   for (const Skin::Fixed& f : skin_->fixed()) {
     const Vec3 target = pose.joints[f.joint.index()].point(f.position_joint);
@@ -200,20 +193,16 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
 // return to where the flesh carries them.
 void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stats) {
   const auto fastest = static_cast<float>(kFastest_per_s * skin_->size_m());
-  const auto broken = [&](std::size_t k) {
-    float speed = 0, place = 0;
-    for (const auto axis : kAxes) {
-      const float v = (state.velocity.*axis)[k] - (state.surroundings.anchorVelocity.*axis)[k];
-      speed += v * v;
-      place += std::abs((state.position.*axis)[k]);
-    }
-    return !(speed < fastest * fastest && place < 1e9f);
-  };
+  const GridLayout& g = skin_->layout();
+  const VectorArray& anchorVelocity = state.surroundings.anchorVelocity;
+  if (!anyBroken(state.position, state.velocity, anchorVelocity, fastest, g.row(1),
+                 g.row(g.rows - 1)))
+    return;
   std::vector<std::size_t> points;
   for (const PointBlock& b : skin_->blocks())
     for (std::size_t k = b.first; k < b.first + b.count; ++k)
-      if (broken(k)) points.push_back(k);
-  if (points.empty()) return;
+      if (isBroken(state.position, state.velocity, anchorVelocity, fastest, k))
+        points.push_back(k);
   SkinState carried;
   carrySkin(*skin_, pose, carried);
   for (const std::size_t k : points) {
@@ -222,7 +211,6 @@ void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stat
       (state.velocity.*axis)[k] = (state.surroundings.anchorVelocity.*axis)[k];
     }
   }
-  fillPads(skin_->layout(), state.velocity);
   stats.repaired_points += points.size();
 }
 

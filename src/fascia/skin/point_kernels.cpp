@@ -1,0 +1,204 @@
+#include <fascia/skin/point_kernels.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fascia/skin/point_kernels.cpp"
+#include <hwy/foreach_target.h>
+
+#include <fascia/skin/simd_vector-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace fascia {
+namespace HWY_NAMESPACE {
+
+constexpr std::size_t kCount = PointBlock::kCapacity;
+inline MutablePointers pointers(ContactLanes::Lanes3& a) {
+  return {a.x.data(), a.y.data(), a.z.data()};
+}
+inline Pointers pointers(const ContactLanes::Lanes3& a) {
+  return {a.x.data(), a.y.data(), a.z.data()};
+}
+
+BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const VectorArray& normal,
+                  const FloatArray& fat, ContactLanes& lanes) {
+  const D d;
+  const V big = hn::Set(d, 1e30f);
+  const V3 none{big, big, big};
+  V3 low = none, high = scaled(hn::Set(d, -1.f), none);
+  for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
+    const std::size_t k = block.first + l;
+    const V3 inner = mulAdd(hn::Neg(hn::LoadU(d, fat.data() + k)), pointers(normal).at(k),
+                            pointers(position).at(k));
+    pointers(lanes.inner).set(l, inner);
+    pointers(lanes.start).set(l, inner);
+    hn::StoreU(big, d, lanes.nearest.data() + l);
+    const auto used = hn::Lt(hn::Iota(d, static_cast<float>(l)),
+                             hn::Set(d, static_cast<float>(block.count)));
+    const V3 forLow = select(used, inner, none);
+    const V3 forHigh = select(used, inner, scaled(hn::Set(d, -1.f), none));
+    low = {hn::Min(low.x, forLow.x), hn::Min(low.y, forLow.y), hn::Min(low.z, forLow.z)};
+    high = {hn::Max(high.x, forHigh.x), hn::Max(high.y, forHigh.y), hn::Max(high.z, forHigh.z)};
+  }
+  return {{hn::GetLane(hn::MinOfLanes(d, low.x)), hn::GetLane(hn::MinOfLanes(d, low.y)), hn::GetLane(hn::MinOfLanes(d, low.z))},
+          {hn::GetLane(hn::MaxOfLanes(d, high.x)), hn::GetLane(hn::MaxOfLanes(d, high.y)), hn::GetLane(hn::MaxOfLanes(d, high.z))}};
+}
+
+float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
+  const D d;
+  V deepest = hn::Zero(d);
+  for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
+    const auto used =
+        hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(count)));
+    const V distance = hn::IfThenElse(used, hn::LoadU(d, lanes.distance.data() + l),
+                                      hn::Set(d, 1e30f));
+    const V depth = hn::Max(hn::Neg(distance), hn::Zero(d));
+    deepest = hn::Max(deepest, depth);
+    const V3 normal = pointers(lanes.normal).at(l);
+    const MutablePointers inner = pointers(lanes.inner);
+    if (move) inner.set(l, select(used, mulAdd(depth, normal, inner.at(l)), inner.at(l)));
+    const V outside = hn::Max(distance, hn::Zero(d));
+    const V nearest = hn::LoadU(d, lanes.nearest.data() + l);
+    const auto nearer = hn::Lt(outside, nearest);
+    hn::StoreU(hn::Min(outside, nearest), d, lanes.nearest.data() + l);
+    const MutablePointers kept = pointers(lanes.nearestNormal);
+    kept.set(l, select(nearer, normal, kept.at(l)));
+    float* solids = lanes.nearestSolid.data() + l;
+    hn::StoreU(hn::IfThenElse(nearer, hn::Set(d, solid), hn::LoadU(d, solids)), d, solids);
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, deepest));
+}
+
+void absorbVelocityImpl(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes) {
+  const D d;
+  for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
+    const auto mine = hn::Eq(hn::LoadU(d, lanes.nearestSolid.data() + l), hn::Set(d, solid));
+    const MutablePointers out = pointers(lanes.fleshVelocity);
+    out.set(l, select(mine, pointers(velocity).at(l), out.at(l)));
+  }
+}
+
+float finishImpl(const PointBlock& block, bool any, float reach, float restitution,
+                 const PointModel& points, const ContactLanes& lanes, VectorArray& position,
+                 VectorArray& velocity, PointSurroundings& around) {
+  const D d;
+  const V zero = hn::Zero(d);
+  const V3 zero3{zero, zero, zero};
+  V fastest = zero;
+  for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
+    const std::size_t k = block.first + l;
+    const auto used = hn::Lt(hn::Iota(d, static_cast<float>(l)),
+                             hn::Set(d, static_cast<float>(block.count)));
+    const MutablePointers r = pointers(position), v = pointers(velocity);
+    V3 speed = select(used, v.at(k), zero3);
+    if (!any) {
+      pointers(around.normal).set(k, zero3);
+      pointers(around.fleshVelocity).set(k, zero3);
+      hn::StoreU(zero, d, around.offset.data() + k);
+    } else {
+      const V nearest = hn::LoadU(d, lanes.nearest.data() + l);
+      const auto isFree = hn::Gt(hn::LoadU(d, points.free.data() + k), zero);
+      const auto touching = hn::And(hn::And(used, isFree), hn::Le(nearest, hn::Set(d, reach)));
+      const auto onFlesh = hn::And(touching, hn::Le(nearest, zero));
+      const V3 normal = select(touching, pointers(lanes.nearestNormal).at(l), zero3);
+      const V3 flesh = select(touching, pointers(lanes.fleshVelocity).at(l), zero3);
+      const V3 moved = pointers(lanes.inner).at(l) - pointers(lanes.start).at(l);
+      const V3 place = r.at(k);
+      const V3 now = select(onFlesh, place + moved, place);
+      const V approach = hn::Min(dot(normal, speed - flesh), zero);
+      speed = select(onFlesh, mulAdd(hn::Mul(hn::Set(d, -1.f - restitution), approach), normal, speed),
+                     speed);
+      const V offset = hn::Sub(dot(normal, now), nearest);
+      r.set(k, now);
+      v.set(k, select(used, speed, v.at(k)));
+      pointers(around.normal).set(k, normal);
+      pointers(around.fleshVelocity).set(k, flesh);
+      hn::StoreU(hn::IfThenElseZero(touching, offset), d, around.offset.data() + k);
+    }
+    fastest = hn::Max(fastest, dot(speed, speed));
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, fastest));
+}
+
+float followImpl(const VectorArray& anchor, const VectorArray& nextAnchor, float rate,
+                 const FloatArray* carried, VectorArray& anchorVelocity, VectorArray& velocity) {
+  const D d;
+  const std::size_t n = anchor.size() / hn::Lanes(d) * hn::Lanes(d);
+  V farthest = hn::Zero(d);
+  for (std::size_t k = 0; k < n; k += hn::Lanes(d)) {
+    const V3 way = pointers(nextAnchor).at(k) - pointers(anchor).at(k);
+    farthest = hn::Max(farthest, dot(way, way));
+    const V3 next = scaled(hn::Set(d, rate), way);
+    if (carried) {
+      const V share = hn::LoadU(d, carried->data() + k);
+      const MutablePointers v = pointers(velocity);
+      v.set(k, mulAdd(share, next - pointers(anchorVelocity).at(k), v.at(k)));
+    }
+    pointers(anchorVelocity).set(k, next);
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, farthest));
+}
+
+bool brokenImpl(const VectorArray& position, const VectorArray& velocity,
+                const VectorArray& anchorVelocity, float fastest, std::size_t first,
+                std::size_t last) {
+  const D d;
+  const V speedLimit = hn::Set(d, fastest * fastest), placeLimit = hn::Set(d, 1e18f);
+  auto sound = hn::Eq(speedLimit, speedLimit);
+  for (std::size_t k = first; k < last; k += hn::Lanes(d)) {
+    const V3 v = pointers(velocity).at(k) - pointers(anchorVelocity).at(k);
+    const V3 r = pointers(position).at(k);
+    // Comparisons with NaN are false.
+    sound = hn::And(sound, hn::And(hn::Lt(dot(v, v), speedLimit), hn::Lt(dot(r, r), placeLimit)));
+  }
+  return !hn::AllTrue(d, sound);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace fascia
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fascia {
+
+HWY_EXPORT(loadImpl);
+HWY_EXPORT(absorbImpl);
+HWY_EXPORT(absorbVelocityImpl);
+HWY_EXPORT(finishImpl);
+HWY_EXPORT(followImpl);
+HWY_EXPORT(brokenImpl);
+
+BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
+                          const VectorArray& skinNormal, const FloatArray& fat,
+                          ContactLanes& lanes) {
+  return HWY_DYNAMIC_DISPATCH(loadImpl)(block, position, skinNormal, fat, lanes);
+}
+
+float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
+  return HWY_DYNAMIC_DISPATCH(absorbImpl)(solid, move, count, lanes);
+}
+
+void absorbVelocity(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes) {
+  HWY_DYNAMIC_DISPATCH(absorbVelocityImpl)(solid, velocity, lanes);
+}
+
+float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,
+                    const PointModel& points, const ContactLanes& lanes, VectorArray& position,
+                    VectorArray& velocity, PointSurroundings& around) {
+  return HWY_DYNAMIC_DISPATCH(finishImpl)(block, any, reach_m, restitution, points, lanes, position,
+                                          velocity, around);
+}
+
+float followAnchors(const VectorArray& anchor, const VectorArray& nextAnchor, float rate_per_s,
+                    const FloatArray* carried, VectorArray& anchorVelocity, VectorArray& velocity) {
+  return HWY_DYNAMIC_DISPATCH(followImpl)(anchor, nextAnchor, rate_per_s, carried, anchorVelocity,
+                                          velocity);
+}
+
+bool anyBroken(const VectorArray& position, const VectorArray& velocity,
+               const VectorArray& anchorVelocity, float fastest_m_per_s, std::size_t first,
+               std::size_t last) {
+  return HWY_DYNAMIC_DISPATCH(brokenImpl)(position, velocity, anchorVelocity, fastest_m_per_s,
+                                          first, last);
+}
+
+}  // namespace fascia
+#endif

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <fascia/base/aligned.h>
+#include <fascia/skin/point_model.h>
+
+namespace fascia {
+
+// SIMD kernels over points, whatever connects them; dispatched at run time.
+
+// Runs of consecutive points in storage order, the unit in which points are tested against solids.
+// The run may be followed by padding: kernels work on kCapacity entries, pads included.
+struct PointBlock {
+  static constexpr std::size_t kCapacity = 16;  // the widest vector
+  std::size_t first;
+  std::uint32_t count;
+};
+
+// One block's points while they are tested against solids.
+struct ContactLanes {
+  template <class T>
+  using Lanes = std::array<T, PointBlock::kCapacity>;
+  struct alignas(64) Lanes3 {
+    Lanes<float> x, y, z;
+    Vectors view(std::size_t n) { return {x.data(), y.data(), z.data(), n}; }
+  };
+  Lanes3 inner;            // r − τ n, moved out of solids as they are visited
+  Lanes3 start;            // inner before any solid
+  Lanes3 normal;           // written by Field::evaluate
+  Lanes3 nearestNormal;    // of the nearest solid so far
+  Lanes3 fleshVelocity;    // of that solid's matter
+  alignas(64) Lanes<float> distance;      // written by Field::evaluate
+  alignas(64) Lanes<float> nearest;       // distance to the nearest solid so far, ≥ 0
+  alignas(64) Lanes<float> nearestSolid;  // its number (a float, to blend like the rest)
+};
+
+struct BlockBox {
+  float low[3], high[3];
+};
+
+// Loads inner = start = r − fat n and resets `nearest`; returns the block's box.
+BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
+                          const VectorArray& skinNormal, const FloatArray& fat,
+                          ContactLanes& lanes);
+
+// Takes up the distances and normals to one solid: moves points that are inside out of it (if
+// `move`), keeps the nearest. Returns the largest depth found.
+float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes);
+
+// Copies `velocity` to the lanes whose nearest solid this is.
+void absorbVelocity(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes);
+
+// Writes the result of a block: moved positions, velocities without their approaching part, half
+// spaces. `any` = false: nothing is within reach. Returns the largest squared speed.
+float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,
+                    const PointModel& points, const ContactLanes& lanes, VectorArray& position,
+                    VectorArray& velocity, PointSurroundings& around);
+
+// Anchor velocities of the coming interval; velocities of points with added mass follow their
+// anchor's change (see leapfrog.h). `carried` may be null. Returns the largest squared way of an
+// anchor. All arrays in whole.
+float followAnchors(const VectorArray& anchor, const VectorArray& nextAnchor, float rate_per_s,
+                    const FloatArray* carried, VectorArray& anchorVelocity, VectorArray& velocity);
+
+// True if any entry in [first, last) is not finite, beyond 1e9 m, or faster than `fastest`
+// relative to its anchor.
+bool anyBroken(const VectorArray& position, const VectorArray& velocity,
+               const VectorArray& anchorVelocity, float fastest_m_per_s, std::size_t first,
+               std::size_t last);
+
+}  // namespace fascia
