@@ -59,13 +59,14 @@ class Solid {
   TriangleMesh tessellate(int detail) const;
 
   // Signed distance estimate (m, negative inside) and outward unit normal at local points, batch.
-  // Never exceeds the true signed distance of an undeformed shape. Error for |d| up to a quarter
-  // (a tenth) of the smallest half size, relative to that limit, half sizes within 1 : 4:
+  // Of an undeformed shape it never exceeds the true signed distance. Largest error for |d| up to a
+  // tenth (a quarter) of the smallest half size, relative to that limit, half sizes within 1 : 4:
   //   sphere, capsule     exact (float rounding: 1e-6 of the largest half size)
-  //   ellipsoid           0.3 % (0.03 %)
-  //   superellipsoid      exponents in [0.5, 1.25]: 8 % (1 %);  [0.2, 2]: 20 % (4 %)
-  //   deformed            first order in d: see tests/field/distance_test.cpp
-  // p − d n lies on the surface up to that error, and not inside.
+  //   ellipsoid           0.02 % (6 %, near the inner focal points; 0.01 % for typical points)
+  //   superellipsoid      exponents in [0.5, 1.25]: 1 % (6 %);  in [0.2, 2]: 10 % (20 %), at rims;
+  //                       99 of 100 points: 0.05 % (1 %)
+  //   deformed            first order in d: an undeformed distance over its gradient's length
+  // p − d n lies on the surface up to that error, and never inside an undeformed shape.
   void evaluate(ConstVectors points_local, float* distance_m, Vectors normal_local) const;
 
   // Coordinates that follow the matter while parameters change. Undo the deformations; then the
