@@ -13,8 +13,8 @@ namespace {
 constexpr double kLargestNumber = 1e6;  // beyond it no metre, radian or second makes sense
 // Keys closer than this count as two at once. Much smaller, and slopes overflow; much larger, and
 // deliberate jumps between frames are refused.
-constexpr double kShortestInterval_s = 1e-6;
-constexpr double kShortestLoop_s = 1e-3;
+constexpr double kShortestInterval = 1e-6;  // s
+constexpr double kShortestLoop = 1e-3;      // s
 
 bool inRange(double number, double low, double high) {
   return number >= low && number <= high;  // false for NaN
@@ -38,7 +38,7 @@ void validateOrder(const std::vector<Key>& keys, const std::string& pointer,
                    Diagnostics& diagnostics) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const double interval_s = keys[i].time_s - keys[i - 1].time_s;
-    if (std::abs(interval_s) < kShortestInterval_s) {
+    if (std::abs(interval_s) < kShortestInterval) {
       diagnostics.error(pointer + "/" + std::to_string(i),
                         "two keys at " + shortNumber(keys[i].time_s) + " s",
                         "delete one, or move it a little to make a jump");
@@ -135,7 +135,7 @@ void validateMotion(const MotionDef& motion, const std::string& pointer, Diagnos
                                                std::to_string(kMostTracks));
     return;
   }
-  if (motion.loop && !(playedDuration_s(motion) >= kShortestLoop_s)) {
+  if (motion.loop && !(playedDuration_s(motion) >= kShortestLoop)) {
     diagnostics.error(pointer + "/duration_s", "a loop needs a duration of at least 1 ms",
                       "set duration_s, or give a key after 0 s");
   }
