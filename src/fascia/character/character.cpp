@@ -29,8 +29,8 @@ void checkSimulation(const SimulationDef& s, Diagnostics& diagnostics) {
   range("settle_s", s.settle_s, 0, 60);
   for (int a = 0; a < 3; ++a)
     range(("gravity_m_per_s2/" + std::to_string(a)).c_str(), s.gravity_m_per_s2[a], -1e4, 1e4);
-  if (s.integrator == "auto") return;
-  std::string names = "auto";
+  if (s.integrator == "auto" || s.integrator == "leapfrog") return;
+  std::string names = "auto, leapfrog";
   for (const IntegratorInfo& i : integrators()) {
     if (i.name == s.integrator) return;
     names += ", " + std::string(i.name);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+// SSSE3 and AVX3_DL add code, not speed, here.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fascia/skin/grid_kernels.cpp"
 #include <hwy/foreach_target.h>

@@ -1,5 +1,7 @@
 #include <fascia/skin/point_kernels.h>
 
+// SSSE3 and AVX3_DL add code, not speed, here.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fascia/skin/point_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -31,15 +33,17 @@ BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const Ve
     pointers(lanes.inner).set(l, inner);
     pointers(lanes.start).set(l, inner);
     hn::StoreU(big, d, lanes.nearest.data() + l);
-    const auto used = hn::Lt(hn::Iota(d, static_cast<float>(l)),
-                             hn::Set(d, static_cast<float>(block.count)));
+    const auto used =
+        hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));
     const V3 forLow = select(used, inner, none);
     const V3 forHigh = select(used, inner, scaled(hn::Set(d, -1.f), none));
     low = {hn::Min(low.x, forLow.x), hn::Min(low.y, forLow.y), hn::Min(low.z, forLow.z)};
     high = {hn::Max(high.x, forHigh.x), hn::Max(high.y, forHigh.y), hn::Max(high.z, forHigh.z)};
   }
-  return {{hn::GetLane(hn::MinOfLanes(d, low.x)), hn::GetLane(hn::MinOfLanes(d, low.y)), hn::GetLane(hn::MinOfLanes(d, low.z))},
-          {hn::GetLane(hn::MaxOfLanes(d, high.x)), hn::GetLane(hn::MaxOfLanes(d, high.y)), hn::GetLane(hn::MaxOfLanes(d, high.z))}};
+  return {{hn::GetLane(hn::MinOfLanes(d, low.x)), hn::GetLane(hn::MinOfLanes(d, low.y)),
+           hn::GetLane(hn::MinOfLanes(d, low.z))},
+          {hn::GetLane(hn::MaxOfLanes(d, high.x)), hn::GetLane(hn::MaxOfLanes(d, high.y)),
+           hn::GetLane(hn::MaxOfLanes(d, high.z))}};
 }
 
 float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
@@ -48,8 +52,8 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
   for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(count)));
-    const V distance = hn::IfThenElse(used, hn::LoadU(d, lanes.distance.data() + l),
-                                      hn::Set(d, 1e30f));
+    const V distance =
+        hn::IfThenElse(used, hn::LoadU(d, lanes.distance.data() + l), hn::Set(d, 1e30f));
     const V depth = hn::Max(hn::Neg(distance), hn::Zero(d));
     deepest = hn::Max(deepest, depth);
     const V3 normal = pointers(lanes.normal).at(l);
@@ -85,8 +89,8 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
   V fastest = zero;
   for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
     const std::size_t k = block.first + l;
-    const auto used = hn::Lt(hn::Iota(d, static_cast<float>(l)),
-                             hn::Set(d, static_cast<float>(block.count)));
+    const auto used =
+        hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));
     const MutablePointers r = pointers(position), v = pointers(velocity);
     V3 speed = select(used, v.at(k), zero3);
     if (!any) {
@@ -104,8 +108,8 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
       const V3 place = r.at(k);
       const V3 now = select(onFlesh, place + moved, place);
       const V approach = hn::Min(dot(normal, speed - flesh), zero);
-      speed = select(onFlesh, mulAdd(hn::Mul(hn::Set(d, -1.f - restitution), approach), normal, speed),
-                     speed);
+      speed = select(
+          onFlesh, mulAdd(hn::Mul(hn::Set(d, -1.f - restitution), approach), normal, speed), speed);
       const V offset = hn::Sub(dot(normal, now), nearest);
       r.set(k, now);
       v.set(k, select(used, speed, v.at(k)));
@@ -137,6 +141,18 @@ float followImpl(const VectorArray& anchor, const VectorArray& nextAnchor, float
   return hn::GetLane(hn::MaxOfLanes(d, farthest));
 }
 
+void followCarrierImpl(const VectorArray& next, const FloatArray& carried,
+                       VectorArray& carrierVelocity, VectorArray& velocity) {
+  const D d;
+  const std::size_t n = carried.size() / hn::Lanes(d) * hn::Lanes(d);
+  const MutablePointers v = pointers(velocity), carrier = pointers(carrierVelocity);
+  for (std::size_t k = 0; k < n; k += hn::Lanes(d)) {
+    const V3 now = pointers(next).at(k);
+    v.set(k, mulAdd(hn::LoadU(d, carried.data() + k), now - carrier.at(k), v.at(k)));
+    carrier.set(k, now);
+  }
+}
+
 bool brokenImpl(const VectorArray& position, const VectorArray& velocity,
                 const VectorArray& anchorVelocity, float fastest, std::size_t first,
                 std::size_t last) {
@@ -164,6 +180,7 @@ HWY_EXPORT(absorbImpl);
 HWY_EXPORT(absorbVelocityImpl);
 HWY_EXPORT(finishImpl);
 HWY_EXPORT(followImpl);
+HWY_EXPORT(followCarrierImpl);
 HWY_EXPORT(brokenImpl);
 
 BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
@@ -191,6 +208,11 @@ float followAnchors(const VectorArray& anchor, const VectorArray& nextAnchor, fl
                     const FloatArray* carried, VectorArray& anchorVelocity, VectorArray& velocity) {
   return HWY_DYNAMIC_DISPATCH(followImpl)(anchor, nextAnchor, rate_per_s, carried, anchorVelocity,
                                           velocity);
+}
+
+void followCarrier(const VectorArray& next, const FloatArray& carried, VectorArray& carrierVelocity,
+                   VectorArray& velocity) {
+  HWY_DYNAMIC_DISPATCH(followCarrierImpl)(next, carried, carrierVelocity, velocity);
 }
 
 bool anyBroken(const VectorArray& position, const VectorArray& velocity,

@@ -27,11 +27,11 @@ struct ContactLanes {
     Lanes<float> x, y, z;
     Vectors view(std::size_t n) { return {x.data(), y.data(), z.data(), n}; }
   };
-  Lanes3 inner;            // r − τ n, moved out of solids as they are visited
-  Lanes3 start;            // inner before any solid
-  Lanes3 normal;           // written by Field::evaluate
-  Lanes3 nearestNormal;    // of the nearest solid so far
-  Lanes3 fleshVelocity;    // of that solid's matter
+  Lanes3 inner;                           // r − τ n, moved out of solids as they are visited
+  Lanes3 start;                           // inner before any solid
+  Lanes3 normal;                          // written by Field::evaluate
+  Lanes3 nearestNormal;                   // of the nearest solid so far
+  Lanes3 fleshVelocity;                   // of that solid's matter
   alignas(64) Lanes<float> distance;      // written by Field::evaluate
   alignas(64) Lanes<float> nearest;       // distance to the nearest solid so far, ≥ 0
   alignas(64) Lanes<float> nearestSolid;  // its number (a float, to blend like the rest)
@@ -64,6 +64,11 @@ float finishContact(const PointBlock& block, bool any, float reach_m, float rest
 // anchor. All arrays in whole.
 float followAnchors(const VectorArray& anchor, const VectorArray& nextAnchor, float rate_per_s,
                     const FloatArray* carried, VectorArray& anchorVelocity, VectorArray& velocity);
+
+// The same for points that ride on a coarse surface: `next` is its velocity, `carrierVelocity` what
+// it was; writes next to carrierVelocity.
+void followCarrier(const VectorArray& next, const FloatArray& carried, VectorArray& carrierVelocity,
+                   VectorArray& velocity);
 
 // True if any entry in [first, last) is not finite, beyond 1e9 m, or faster than `fastest`
 // relative to its anchor.

@@ -25,7 +25,9 @@ HWY_INLINE V3 operator+(V3 a, V3 b) {
 HWY_INLINE V3 operator-(V3 a, V3 b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-HWY_INLINE V3 scaled(V s, V3 a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
+HWY_INLINE V3 scaled(V s, V3 a) {
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
 HWY_INLINE V3 mulAdd(V s, V3 a, V3 b) {
   return {hn::MulAdd(s, a.x, b.x), hn::MulAdd(s, a.y, b.y), hn::MulAdd(s, a.z, b.z)};
 }
@@ -37,7 +39,9 @@ HWY_INLINE V3 select(M mask, V3 yes, V3 no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
           hn::IfThenElse(mask, yes.z, no.z)};
 }
-HWY_INLINE V clampAbs(V t, V limit) { return hn::Max(hn::Neg(limit), hn::Min(t, limit)); }
+HWY_INLINE V clampAbs(V t, V limit) {
+  return hn::Max(hn::Neg(limit), hn::Min(t, limit));
+}
 // 1/√a for a > 0: the approximation and one Newton step, within 2 ulp of exact.
 HWY_INLINE V inverseRoot(V a) {
   const D d;
@@ -60,8 +64,12 @@ struct MutablePointers {
     hn::StoreU(v.x, d, x + k), hn::StoreU(v.y, d, y + k), hn::StoreU(v.z, d, z + k);
   }
 };
-inline Pointers pointers(const VectorArray& a) { return {a.x.data(), a.y.data(), a.z.data()}; }
-inline MutablePointers pointers(VectorArray& a) { return {a.x.data(), a.y.data(), a.z.data()}; }
+inline Pointers pointers(const VectorArray& a) {
+  return {a.x.data(), a.y.data(), a.z.data()};
+}
+inline MutablePointers pointers(VectorArray& a) {
+  return {a.x.data(), a.y.data(), a.z.data()};
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace fascia

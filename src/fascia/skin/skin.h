@@ -26,8 +26,10 @@ namespace fascia {
 // How a skin is stepped through time; plain values from the character's simulation settings.
 struct SkinSettings {
   Vec3 gravity_m_per_s2{0, -9.81, 0};
-  std::string integrator = "auto";  // "auto": stabilised leapfrog; else a name of integrators()
-  double step_s = 0;                // fixed step or first guess; 0 = chosen from the material
+  // "auto": stabilised leapfrog, on two grids where the skin is fine; "leapfrog": on one grid with
+  // the step that its waves need; else a name of integrators().
+  std::string integrator = "auto";
+  double step_s = 0;  // fixed step or first guess; 0 = chosen from the material
   double min_step_s = 1e-5, max_step_s = 0.02;
   double position_tolerance_m = 1e-3;
   double velocity_tolerance = 1e-3;
@@ -70,6 +72,9 @@ class Skin {
   const SkinQuantities& quantities() const { return quantities_; }
   std::span<const PointBlock> blocks() const { return blocks_; }
   double defaultStep_s() const { return defaultStep_s_; }
+  // The same skin at a resolution whose waves a step of about a millisecond resolves; nullptr if
+  // this one's does. See leapfrog.h.
+  const Skin* coarse() const { return coarse_.get(); }
   double size_m() const { return size_m_; }  // diagonal of the rest shape's box
 
   // Points fixed to a joint: the two end rows.
@@ -82,6 +87,8 @@ class Skin {
 
  private:
   friend class SkinBuilder;
+  Skin() = default;
+
   GridLayout layout_;
   SkinSettings settings_;
   SkinQuantities quantities_;
@@ -94,12 +101,15 @@ class Skin {
   std::vector<Fixed> fixed_;
   std::vector<PointBlock> blocks_;
   double defaultStep_s_ = 0, size_m_ = 0;
+  std::shared_ptr<const Skin> coarse_;
 };
 
 // What changes over time; a plain value. Arrays are in GridLayout storage order, pads filled.
 struct SkinState {
   VectorArray position, velocity;  // world, m and m/s
   PointSurroundings surroundings;  // of the interval that starts now
+  VectorArray carrierVelocity;     // of the coarse surface under each point (see leapfrog.h), m/s
+  std::vector<SkinState> coarse;   // the coarse skin's state, or none
   float maxSpeed_m_per_s = 0;      // at the end of the last interval
   bool ready = false;              // surroundings belong to this state's time
 

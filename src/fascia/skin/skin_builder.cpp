@@ -14,6 +14,9 @@ constexpr int kMinSide = 8, kMaxSide = 4096;
 // Share of the skin's mass that the automatic step may add to points whose cells are much smaller
 // than the rest (the rings at the ends): below this no one sees a difference.
 constexpr double kAddedMassShare = 0.02;
+// A skin whose waves need shorter steps than this rides on a coarse one with about so many points.
+constexpr double kFinestStep_s = 0.4e-3;
+constexpr std::size_t kCoarsePoints = 1200;
 
 Vec3 pointAt(const VectorArray& a, std::size_t k) {
   return {a.x[k], a.y[k], a.z[k]};
@@ -78,7 +81,10 @@ class SkinBuilder {
     setQuantities();
     attach();
     applyEdits();
-    makeModel(bottom, top);
+    makeModel();
+    if (skin_.settings_.integrator == "auto" && skin_.defaultStep_s_ < kFinestStep_s &&
+        skin_.pointCount() >= 2 * kCoarsePoints)
+      makeCoarse();
   }
 
  private:
@@ -414,7 +420,32 @@ class SkinBuilder {
     });
   }
 
-  void makeModel(const EndRing& bottom, const EndRing& top) {
+  // The skin that a fine one rides on: everything resampled, attached anew.
+  void makeCoarse() {
+    auto coarse = std::shared_ptr<Skin>(new Skin);
+    const double ratio = std::sqrt(static_cast<double>(skin_.pointCount()) / kCoarsePoints);
+    const auto side = [&](int fine) {
+      return std::max(kMinSide, static_cast<int>(std::lround(fine / ratio)));
+    };
+    coarse->layout_ = {side(skin_.columns()), side(skin_.rows()), true};
+    coarse->settings_ = skin_.settings_;
+    coarse->size_m_ = skin_.size_m_;
+    coarse->rest_ = resample(skin_.layout_, skin_.rest_, coarse->layout_);
+    for (const QuantityInfo& i : quantityInfos())
+      coarse->quantities_[i.quantity] =
+          resample(skin_.layout_, skin_.quantities_[i.quantity], coarse->layout_);
+    SkinBuilder builder(*coarse, def_, base_, pointer_, diagnostics_);
+    builder.joint_[0] = joint_[0];
+    builder.joint_[1] = joint_[1];
+    builder.placeCarriers();
+    const FloatArray restLength = coarse->quantities_[SkinQuantity::tissue_rest_length];
+    builder.attach();
+    coarse->quantities_[SkinQuantity::tissue_rest_length] = restLength;
+    builder.makeModel();
+    skin_.coarse_ = std::move(coarse);
+  }
+
+  void makeModel() {
     const GridLayout& g = skin_.layout_;
     const SkinQuantities& q = skin_.quantities_;
     skin_.elastic_ =
@@ -423,7 +454,7 @@ class SkinBuilder {
                      q[SkinQuantity::prestretch], static_cast<float>(def_.material.max_stretch)});
     skin_.bending_ = Bending(g, skin_.rest_, q[SkinQuantity::bending]);
     skin_.contactResponse_ = {def_.material.friction_per_s, def_.material.restitution};
-    fixEnds(bottom, top);
+    fixEnds();
     makePoints();
     for (int j = 1; j + 1 < g.rows; ++j)
       for (int i = 0; i < g.columns; i += static_cast<int>(PointBlock::kCapacity))
@@ -433,7 +464,7 @@ class SkinBuilder {
     skin_.defaultStep_s_ = longestStep(skin_.points_, kAddedMassShare);
   }
 
-  void fixEnds(const EndRing&, const EndRing&) {
+  void fixEnds() {
     for (int e = 0; e < 2; ++e) {
       const Transform inverse = base_.posedSkeleton.joint_world[joint_[e].index()].inverse();
       for (int i = 0; i < skin_.columns(); ++i) {

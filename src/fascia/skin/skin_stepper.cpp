@@ -13,6 +13,9 @@ namespace {
 // velocity. Longer saves contact tests; shorter follows curved flesh more closely. At 1/120 s a
 // point sliding 0.5 m/s over a 10 cm sphere leaves it by 0.1 mm.
 constexpr double kInterval_s = 1.0 / 120;
+// Steps of a grid that rides on a coarse one: a few relaxations per interval. Longer leaves folds
+// behind in fast motion, shorter costs time in proportion.
+constexpr double kRidingStep_s = 1.0 / 960;
 // A skin point whose anchor jumps farther than this share of the skin's size within one interval
 // has been teleported with the body, not moved.
 constexpr double kJump = 0.2;
@@ -54,7 +57,12 @@ SkinStepper::SkinStepper(const Skin& skin)
       stepper_(skin.layout()),
       contact_({skin.blocks().begin(), skin.blocks().end()}) {
   for (VectorArray* a : {&normal_, &nextAnchor_, &extraForce_}) a->resize(skin.layout().storage());
-  if (skin.settings().integrator != "auto") ode_ = std::make_unique<OdeSkin>(skin);
+  const std::string& integrator = skin.settings().integrator;
+  if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
+  if (integrator == "auto" && skin.coarse()) {
+    coarse_ = std::make_unique<SkinStepper>(*skin.coarse());
+    prolongation_ = Prolongation(skin.coarse()->layout(), skin.layout());
+  }
 }
 
 SkinStepper::~SkinStepper() = default;
@@ -64,9 +72,13 @@ void SkinStepper::advance(SkinPoseSource& poses, double start_s, double end_s, S
   if (!state.ready) begin(poses.at(start_s), state);
   const double span = end_s - start_s;
   const int intervals = std::max(1, static_cast<int>(std::ceil(span / kInterval_s - 1e-6)));
-  for (int i = 0; i < intervals; ++i)
-    interval(poses, start_s + span * i / intervals, start_s + span * (i + 1) / intervals, state,
-             stats);
+  for (int i = 0; i < intervals; ++i) {
+    const double from = start_s + span * i / intervals, to = start_s + span * (i + 1) / intervals;
+    if (ode_)
+      odeInterval(poses, from, to, state, stats);
+    else
+      interval(poses.at(to), to - from, state, stats);
+  }
 }
 
 // Anchors and half spaces for a state that comes from somewhere else.
@@ -77,28 +89,57 @@ void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
   skin_->anchors().place(*pose.field, scratch_, state.surroundings.anchor);
   SkinStats ignored;
   settle(pose, kInterval_s, state, ignored);
+  if (coarse_) {
+    state.coarse.assign(1, resampled(*skin_, state, coarse_->skin()));
+    coarse_->begin(pose, state.coarse.front());
+    state.carrierVelocity.resize(g.storage());
+    state.carrierVelocity.fill(0.f);
+  }
   state.ready = true;
 }
 
-void SkinStepper::interval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
+void SkinStepper::interval(const SkinPose& pose, double duration_s, SkinState& state,
                            SkinStats& stats) {
+  const int steps = chooseStep(duration_s);
+  if (coarse_) rideOnCoarse(pose, duration_s, state, stats);
   Stopwatch watch;
-  const double duration = end_s - start_s;
-  const int steps = ode_ ? 0 : chooseStep(duration);
-  const SkinPose pose = poses.at(end_s);
-  surround(pose, duration, state, stats);
+  surround(pose, duration_s, state, stats);
   watch.lap(stats.other_s);
-  if (ode_) {
-    ode_->advance(poses, start_s, end_s, contact_, state, stats);
-    double bookedBySolver = 0;
-    watch.lap(bookedBySolver);
-    settle(poses.at(end_s), duration, state, stats);
-  } else {
-    leapfrog(steps, state, stats);
-    watch.lap(stats.forces_s);
-    settle(pose, duration, state, stats);
-  }
+  leapfrog(steps, state, stats);
+  watch.lap(stats.forces_s);
+  settle(pose, duration_s, state, stats);
   watch.lap(stats.constraints_s);
+}
+
+void SkinStepper::odeInterval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
+                              SkinStats& stats) {
+  Stopwatch watch;
+  surround(poses.at(end_s), end_s - start_s, state, stats);
+  watch.lap(stats.other_s);
+  ode_->advance(poses, start_s, end_s, contact_, state, stats);
+  watch = Stopwatch();  // the solver books its own time
+  settle(poses.at(end_s), end_s - start_s, state, stats);
+  watch.lap(stats.constraints_s);
+}
+
+// Steps the coarse grid first and hands its velocity to the points that ride on it.
+void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state,
+                               SkinStats& stats) {
+  SkinState& coarse = state.coarse.front();
+  coarseStart_ = coarse.position;
+  const std::uint64_t stepsBefore = stats.steps;
+  coarse_->interval(pose, duration_s, coarse, stats);
+  stats.steps = stepsBefore;  // the fine grid's are counted
+
+  Stopwatch watch;
+  coarseVelocity_.resize(coarseStart_.size());
+  const auto rate = static_cast<float>(1 / duration_s);
+  for (const auto axis : kAxes)
+    for (std::size_t k = 0; k < coarseStart_.size(); ++k)
+      (coarseVelocity_.*axis)[k] = ((coarse.position.*axis)[k] - (coarseStart_.*axis)[k]) * rate;
+  prolongation_.apply(coarseVelocity_, carrierNext_);
+  followCarrier(carrierNext_, coefficients_.carried, state.carrierVelocity, state.velocity);
+  watch.lap(stats.other_s);
 }
 
 // Where anchors and fixed points go during the interval.
@@ -108,8 +149,8 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
   skin_->anchors().place(*pose.field, scratch_, nextAnchor_);
   const auto rate = static_cast<float>(1 / duration_s);
   const float way = followAnchors(around.anchor, nextAnchor_, rate,
-                                  ode_ ? nullptr : &coefficients_.carried, around.anchorVelocity,
-                                  state.velocity);
+                                  ode_ || coarse_ ? nullptr : &coefficients_.carried,
+                                  around.anchorVelocity, state.velocity);
   const auto jump = static_cast<float>(kJump * skin_->size_m());
   if (!(way < jump * jump)) {
     // A posture jump: the skin jumps with the flesh and starts anew from there.
@@ -117,6 +158,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
     around.anchor = nextAnchor_;
     around.anchorVelocity.fill(0.f);
     around.normal.fill(0.f);
+    state.carrierVelocity.fill(0.f);
     stats.repaired_points += skin_->pointCount();
   }
   for (const Skin::Fixed& f : skin_->fixed()) {
@@ -130,7 +172,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
 // The number of equal steps for an interval; readies the coefficients for their length.
 int SkinStepper::chooseStep(double duration_s) {
   const double given = skin_->settings().step_s;
-  const double longest = given > 0 ? given : skin_->defaultStep_s();
+  const double longest = given > 0 ? given : coarse_ ? kRidingStep_s : skin_->defaultStep_s();
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / longest - 1e-6)));
   const double h = duration_s / steps;
   // Frame times are rounded sums: only a real change of step is worth new coefficients.
@@ -201,8 +243,7 @@ void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stat
   std::vector<std::size_t> points;
   for (const PointBlock& b : skin_->blocks())
     for (std::size_t k = b.first; k < b.first + b.count; ++k)
-      if (isBroken(state.position, state.velocity, anchorVelocity, fastest, k))
-        points.push_back(k);
+      if (isBroken(state.position, state.velocity, anchorVelocity, fastest, k)) points.push_back(k);
   SkinState carried;
   carrySkin(*skin_, pose, carried);
   for (const std::size_t k : points) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include <fascia/skin/prolongation.h>
 #include <fascia/skin/skin.h>
 
 namespace fascia {
@@ -21,8 +22,10 @@ class SkinStepper {
 
  private:
   void begin(const SkinPose& pose, SkinState& state);
-  void interval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
-                SkinStats& stats);
+  void interval(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
+  void odeInterval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
+                   SkinStats& stats);
+  void rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   int chooseStep(double duration_s);
   void leapfrog(int steps, SkinState& state, SkinStats& stats);
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
@@ -35,6 +38,11 @@ class SkinStepper {
   FleshContact contact_;
   VectorArray normal_, nextAnchor_, extraForce_, scratch_;
   std::unique_ptr<OdeSkin> ode_;
+
+  // The grid that this one rides on, if any.
+  std::unique_ptr<SkinStepper> coarse_;
+  Prolongation prolongation_;
+  VectorArray coarseStart_, coarseVelocity_, carrierNext_;
 };
 
 }  // namespace fascia
