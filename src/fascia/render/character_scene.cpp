@@ -6,13 +6,15 @@
 
 #include <fascia/base/error.h>
 #include <fascia/render/bone_mesh.h>
+#include <fascia/render/smooth_mesh.h>
 
 namespace fascia {
 namespace {
 
-constexpr float kScatterOfHeight = 0.045f;  // light inside skin; larger: wax
-constexpr float kVeilOpacity = 0.24f;       // of skin that shows the layers below
-constexpr float kTendonAspect = 1.25f;      // rounder solids are drawn without tendons
+constexpr float kScatterOfHeight = 0.045f;      // light inside skin; larger: wax
+constexpr float kVeilOpacity = 0.24f;           // of skin that shows the layers below
+constexpr std::size_t kSkinTriangles = 10'000;  // fewer: corners show in the outline
+constexpr float kTendonAspect = 1.25f;          // rounder solids are drawn without tendons
 
 Material skinMaterial(const Character& character, const SceneOptions& options, double height_m) {
   Material material;
@@ -34,6 +36,13 @@ Material skinMaterial(const Character& character, const SceneOptions& options, d
   return material;
 }
 
+TriangleMesh pictureMesh(const TriangleMesh& skin) {
+  if (skin.normals.size() == skin.positions.size()) return smoothed(skin, kSkinTriangles);
+  TriangleMesh mesh = skin;
+  computeNormals(mesh.positions, mesh.triangles, mesh.normals);
+  return smoothed(mesh, kSkinTriangles);
+}
+
 // Coordinates in [-1, 1]³ with the longest side of the solid along z, where fibres run. A solid
 // that is nearly round stays inside the range that the shader draws as tendon.
 std::vector<Eigen::Vector3f> fibreCoordinates(const TriangleMesh& mesh) {
@@ -42,8 +51,10 @@ std::vector<Eigen::Vector3f> fibreCoordinates(const TriangleMesh& mesh) {
   if (box.empty()) return {};
   const Eigen::Vector3f center = box.center().cast<float>();
   const Eigen::Vector3f half = (0.5 * box.size()).cwiseMax(1e-9).cast<float>();
-  Eigen::Index longest = 2;
-  half.maxCoeff(&longest);
+  // Round solids take y, up in most joints' frames; a pole that faces the viewer looks odd.
+  Eigen::Index longest = 1;
+  for (const Eigen::Index axis : {0, 2})
+    if (half[axis] > 1.05f * half[longest]) longest = axis;
   const Eigen::Index side = (longest + 1) % 3, other = (longest + 2) % 3;
   const bool slender = half[longest] > kTendonAspect * std::max(half[side], half[other]);
   const float reach = slender ? 1.f : 0.55f;
@@ -170,7 +181,7 @@ Scene buildScene(const Character& character, const CharacterState& state, const 
     addOrnaments(character, state, options, scene);
     if (!skin.positions.empty()) {
       Drawable surface;
-      surface.mesh = skin;
+      surface.mesh = pictureMesh(skin);
       surface.material = skinMaterial(character, options, height_m);
       scene.drawables.push_back(std::move(surface));
     }

@@ -39,7 +39,7 @@ vec3 radiance(vec3 n, vec3 v, Occlusion o) {
   float warmth = smoothstep(0.15, 0.6, (a.r - a.b) / max(a.r, 0.05));
   direct = mix(vec3(dot(direct, vec3(0.35, 0.45, 0.2))), direct, 0.15 + 0.85 * warmth);
   // Red travels farther into a shadow than blue: the penumbra glows.
-  vec3 shadow = pow(vec3(max(o.key, 1e-4)), mix(vec3(1.0), vec3(0.62, 0.92, 1.0), translucency * warmth));
+  vec3 shadow = pow(vec3(max(o.key, 1e-4)), mix(vec3(1.0), vec3(0.72, 0.94, 1.0), translucency * warmth));
   vec3 light = direct * shadow * keyColor + 
                warmth * translucency * transmitted(n, o.throughness) * keyColor;
   light += ambientLight(n) * colouredOpenness(o.openness, a);
