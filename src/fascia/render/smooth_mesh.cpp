@@ -36,9 +36,7 @@ class Divider {
     const Vec3f n0 = fine_.normals[a], n1 = fine_.normals[b], edge = p1 - p0;
     const Vec3f bulge = edge.dot(n1) * n1 - edge.dot(n0) * n0;
     fine_.positions.push_back(0.5f * (p0 + p1) + 0.125f * bulge);
-    const float length2 = edge.squaredNorm();
-    const Vec3f sum = n0 + n1;
-    const Vec3f n = length2 > 0 ? Vec3f(sum - 2 * edge.dot(sum) / length2 * edge) : sum;
+    const Vec3f n = n0 + n1;
     fine_.normals.push_back(n.squaredNorm() > 0 ? Vec3f(n.normalized()) : n0);
     if (!fine_.uvs.empty()) fine_.uvs.push_back(0.5f * (fine_.uvs[a] + fine_.uvs[b]));
   }
