@@ -76,18 +76,6 @@ CharacterFile readCharacterFile(const std::string& path) {
   return out;
 }
 
-Character buildCharacter(const CharacterFile& file, const BuildOptions& options) {
-  try {
-    return Character(file.def, options);
-  } catch (const Error& error) {
-    throw Error(file.lines.locate(error.issues()));
-  }
-}
-
-Character loadCharacter(const std::string& path, const BuildOptions& options) {
-  return buildCharacter(readCharacterFile(path), options);
-}
-
 std::string characterText(const CharacterDef& def) {
   Json out;
   out.set(kVersionKey, kCharacterFormat);

@@ -13,7 +13,15 @@ std::string digitsOf(T value) {
   if (value == 0 && std::signbit(value)) return "-0.0";  // "-0" would be read as an integer
   char buffer[48];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-  return {buffer, end};
+  std::string digits(buffer, end);
+  const std::size_t exponent = digits.find('e');  // "1e+06": people write 1e6
+  if (exponent != std::string::npos) {
+    if (digits[exponent + 1] == '+') digits.erase(exponent + 1, 1);
+    const std::size_t first = digits.find_first_of("123456789", exponent + 1);
+    const std::size_t sign = digits[exponent + 1] == '-' ? 2 : 1;
+    digits.erase(exponent + sign, first - exponent - sign);
+  }
+  return digits;
 }
 
 std::string unescapedPointerKey(std::string_view key) {

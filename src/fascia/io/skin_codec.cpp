@@ -44,7 +44,7 @@ CodecPtr<SkinEndDef> endCodec() {
       .field("axis", &SkinEndDef::axis, vectors({-1e6, 1e6}),
              "Towards the end, in the joint's frame; none: away from the other end")
       .field("radius_m", &SkinEndDef::radius_m, numbers({0, 1000}),
-             "Of the ring; 0: a quarter of the spacing of the rows");
+             "Of the ring; 0: 0.7 of the spacing of the rows");
   return codec;
 }
 
@@ -62,7 +62,7 @@ CodecPtr<SkinMaterialDef> materialCodec() {
       .field("bending_Nm", &M::bending_Nm, numbers({0, 1e3}), "0: a pure membrane")
       .field("drag_Ns_per_m3", &M::drag_Ns_per_m3, numbers({0, 1e5}), "Damps all motion")
       .field("prestretch", &M::prestretch, numbers({0.5, 3}), "Above 1: a taut stocking")
-      .field("max_stretch", &M::max_stretch, numbers({1, 4, true}),
+      .field("max_stretch", &M::max_stretch, numbers({1.01, 4}),
              "Beyond it the stress no longer grows")
       .field("friction_per_s", &M::friction_per_s, numbers({0, 1e4}),
              "Rate at which sliding on flesh dies away")
@@ -172,6 +172,8 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
     field("material", &S::material, materialCodec(), "");
     field("fat", &S::fat, fatCodec(), "");
     field("tissue", &S::tissue, tissueCodec(), "");
+    field("cling", &S::cling, numbers({0, 1}),
+          "How far the skin follows hollows: 0 spans them like a stocking, 1 fills every valley");
     field("texture", &S::texture, texts(1000),
           "A PNG or JPEG in the folder of this file, or below it");
     field("color", &S::color, colorArrays(), "Where there is no texture");

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include <fascia/io/file.h>
+
+#include "sample.h"
+
+namespace fascia {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kRoot = FASCIA_SOURCE_DIR;
+
+bool schemaAccepts(const std::string& text) {
+  static const valijson::Schema* const kSchema = [] {
+    const nlohmann::json document = nlohmann::json::parse(characterSchema());
+    auto* schema = new valijson::Schema;
+    valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(document),
+                                            *schema);
+    return schema;
+  }();
+  const nlohmann::json document = nlohmann::json::parse(text);
+  valijson::Validator validator;
+  return validator.validate(*kSchema, valijson::adapters::NlohmannJsonAdapter(document), nullptr);
+}
+
+TEST(Schema, PublishedFileIsTheOneThatTheReaderMakes) {
+  const std::string path = kRoot + "/schema/fascia-1.schema.json";
+  if (std::getenv("FASCIA_UPDATE_SCHEMA")) writeFileWhole(path, characterSchema());
+  EXPECT_EQ(readFile(path, 1 << 20), characterSchema())
+      << "run this test once with FASCIA_UPDATE_SCHEMA=1 to write it anew";
+}
+
+TEST(Schema, AcceptsTheSamples) {
+  EXPECT_TRUE(schemaAccepts(sample::kMinimal));
+  EXPECT_TRUE(schemaAccepts(sample::kFull));
+}
+
+TEST(Schema, AcceptsEveryExampleThatTheReaderAccepts) {
+  if (!fs::exists(kRoot + "/examples")) GTEST_SKIP() << "no examples";
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot + "/examples")) {
+    const std::string path = entry.path().string();
+    if (!path.ends_with(".fascia.json")) continue;
+    EXPECT_NO_THROW(readCharacterFile(path)) << path;
+    EXPECT_TRUE(schemaAccepts(readFile(path, 1 << 26))) << path;
+  }
+}
+
+// Replaces one member or entry at a time of the sample with something impossible.
+TEST(Schema, RefusesWhatTheReaderRefuses) {
+  const nlohmann::json sample = nlohmann::json::parse(sample::kFull);
+  const nlohmann::json flat = sample.flatten();
+  int refused = 0;
+  for (const auto& [pointer, value] : flat.items()) {
+    nlohmann::json broken = sample;
+    broken[nlohmann::json::json_pointer(pointer)] = nlohmann::json{{"impossible", true}};
+    EXPECT_FALSE(sample::faults(broken.dump()).empty()) << pointer;
+    EXPECT_FALSE(schemaAccepts(broken.dump())) << pointer;
+    ++refused;
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST(Schema, RefusesUnknownKeysWhereverTheReaderDoes) {
+  const nlohmann::json sample = nlohmann::json::parse(sample::kFull);
+  std::vector<std::string> objects;
+  const std::function<void(const nlohmann::json&, const std::string&)> visit =
+      [&](const nlohmann::json& value, const std::string& pointer) {
+        if (value.is_object()) objects.push_back(pointer);
+        if (!value.is_structured()) return;
+        for (const auto& [key, child] : value.items()) visit(child, pointer + '/' + key);
+      };
+  visit(sample, "");
+  ASSERT_GT(objects.size(), 20u);
+  for (const std::string& pointer : objects) {
+    nlohmann::json broken = sample;
+    broken[nlohmann::json::json_pointer(pointer)]["surplus"] = 1;
+    EXPECT_FALSE(sample::faults(broken.dump()).empty()) << pointer;
+    EXPECT_FALSE(schemaAccepts(broken.dump())) << pointer;
+  }
+}
+
+}  // namespace
+}  // namespace fascia
