@@ -16,8 +16,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter = R"(
-Formats, by the ending of OUTPUT:
+constexpr const char* kFooter = R"(Formats, by the ending of the file to write:
   .glb     glTF: skin, texture, skeleton, animation; plays in any viewer
   .pc2     point cache for Blender, Maya, Houdini
   .fcache  everything, exactly; 'fascia render' draws it without simulating again
@@ -62,15 +61,21 @@ void bake(const BakeOptions& options, const Console& console) {
 void addBake(CLI::App& program, Console& console) {
   CLI::App& command = *program.add_subcommand("bake", "Simulate a motion and save the animation");
   const auto options = std::make_shared<BakeOptions>();
-  command.add_option("CHARACTER", options->character, "A *.fascia.json file")->required();
+  command.add_option("CHARACTER", options->character, "A *.fascia.json file")
+      ->required()
+      ->type_name("");
   command.add_option("-o,--output", options->outputs, "File to write; may be given several times")
       ->required()
+      ->type_name("FILE")
+      ->allow_extra_args(false)
       ->check(endsIn({".glb", ".pc2", ".fcache"}));
-  command.add_option("--stats", options->stats, "Write how the simulation went to this JSON file");
+  command.add_option("--stats", options->stats, "Write how the simulation went to this JSON file")
+      ->type_name("FILE");
   command
       .add_option("--fps", options->simulation.frame_rate_hz,
                   "Frames per second (default: as in the file)")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->type_name("HZ")
+      ->check(numberIn(1, 1000));
   options->simulation.addTo(command);
   console.addFlags(command);
   command.footer(kFooter);

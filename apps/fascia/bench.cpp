@@ -8,7 +8,7 @@ namespace fascia {
 void addBench(CLI::App& program, Console& console) {
   CLI::App& group = *program.add_subcommand("bench", "Measure speed, beside others'");
   group.require_subcommand(1);
-  group.footer("\nExamples:\n  fascia bench paper\n  fascia bench paper --seconds 1 --json");
+  group.footer("Examples:\n  fascia bench paper\n  fascia bench paper --seconds 1 --json");
   addPaperBench(group, console);
 }
 

@@ -9,8 +9,8 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter = R"(
-Every fault is listed, a line each, with file, line and the place in the document.
+constexpr const char* kFooter =
+    R"(Every fault is listed, a line each, with file, line and the place in the document.
 
 Examples:
   fascia check examples/penguin.fascia.json
@@ -35,7 +35,9 @@ void check(const std::vector<std::string>& paths, const Console& console) {
 void addCheck(CLI::App& program, Console& console) {
   CLI::App& command = *program.add_subcommand("check", "Find everything that is wrong with a file");
   const auto paths = std::make_shared<std::vector<std::string>>();
-  command.add_option("CHARACTER", *paths, "One or more *.fascia.json files")->required();
+  command.add_option("CHARACTER", *paths, "One or more *.fascia.json files")
+      ->required()
+      ->type_name("");
   console.addFlags(command);
   command.footer(kFooter);
   command.callback([paths, &console] { check(*paths, console); });

@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
-#include <fascia/base/hash.h>
 #include <fascia/base/parallel.h>
 #include <fascia/io/cache.h>
 #include <fascia/io/character_file.h>
@@ -15,8 +14,8 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter = R"(
-Without a file: about the program and this machine, for a bug report.
+constexpr const char* kFooter =
+    R"(Without a file: about the program and this machine, for a bug report.
 
 Examples:
   fascia info
@@ -25,37 +24,28 @@ Examples:
 
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 32;
 
-// Names and values, printed one a line or as a JSON object.
+// What there is to tell: lines for a person, an object for a machine.
 class Facts {
  public:
-  void add(const std::string& name, Json value) { facts_.push_back({name, std::move(value)}); }
+  void add(const std::string& name, int value) { add(name, value, fmt::format("{}", value)); }
+  void add(const std::string& name, double value) { add(name, value, fmt::format("{:g}", value)); }
+  void add(const std::string& name, const std::string& value) { add(name, value, value); }
+  void add(const std::string& name, Json value, const std::string& text) {
+    add(name, std::move(value), std::vector<std::string>{text});
+  }
+  void add(const std::string& name, Json value, const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) lines_.push_back(fmt::format("{:13}  {}", name, text));
+    answer_.set(name, std::move(value));
+  }
 
-  void show(const Console& console) {
-    for (const Json::Member& fact : facts_)
-      if (!fact.value.is(Json::Kind::list))
-        console.say(fmt::format("{:12}  {}", fact.key, plain(fact.value)));
-      else
-        for (const Json& entry : fact.value.list())
-          console.say(fmt::format("{:12}  {}", fact.key, plain(entry)));
-    Json answer = Json::Object{{"ok", true}};
-    for (Json::Member& fact : facts_) answer.set(fact.key, std::move(fact.value));
-    console.answer(answer);
+  void show(const Console& console) const {
+    for (const std::string& line : lines_) console.say(line);
+    console.answer(answer_);
   }
 
  private:
-  // The members of an object follow each other; its keys are for machines.
-  static std::string plain(const Json& value) {
-    if (value.is(Json::Kind::text)) return value.text();
-    if (value.is(Json::Kind::number)) return value.digits();
-    if (value.is(Json::Kind::boolean)) return value.boolean() ? "yes" : "no";
-    std::string text;
-    if (value.is(Json::Kind::object))
-      for (const Json::Member& member : value.object())
-        text += (text.empty() ? "" : ", ") + member.key + " " + plain(member.value);
-    return text;
-  }
-
-  Json::Object facts_;
+  std::vector<std::string> lines_;
+  Json answer_ = Json::Object{{"ok", true}};
 };
 
 int count(std::size_t n) {
@@ -78,21 +68,23 @@ void addCharacter(const Character& character, Facts& facts) {
   facts.add("integrator", def.simulation.integrator);
   facts.add("frame_rate_hz", def.simulation.frame_rate_hz);
   Json::List motions;
+  std::vector<std::string> texts;
   for (std::size_t i = 0; i < character.motionCount(); ++i) {
     const BoundClip& motion = character.motion(i);
     motions.push_back(Json::Object{
         {"name", motion.name}, {"duration_s", motion.duration_s}, {"loop", motion.loop}});
+    texts.push_back(
+        fmt::format("{}, {:g} s{}", motion.name, motion.duration_s, motion.loop ? ", loops" : ""));
   }
-  facts.add("motion", std::move(motions));
+  facts.add("motions", std::move(motions), texts);
 }
 
 void addRecording(const Recording& recording, Facts& facts) {
   facts.add("recorded", recording.motion);
   facts.add("frames", count(recording.frames.size()));
-  facts.add("recorded_frame_rate_hz", recording.frame_rate_hz);
+  facts.add("recorded_hz", recording.frame_rate_hz);
   facts.add("vertices", count(recording.skin.positions.size()));
   facts.add("simulated_s", recording.simulated_s);
-  StateHash hash;
   facts.add("state_hash", fmt::format("{:016x}", recording.state_hash));
 }
 
@@ -114,14 +106,17 @@ std::string openGl() {
 }
 
 void describeProgram(Facts& facts) {
-  facts.add("version", FASCIA_VERSION);
+  facts.add("version", std::string(FASCIA_VERSION));
   facts.add("threads", hardwareThreads());
   facts.add("opengl", openGl());
   Json::List methods;
-  for (const IntegratorInfo& info : integrators())
+  std::vector<std::string> texts;
+  for (const IntegratorInfo& info : integrators()) {
     methods.push_back(Json::Object{{"name", std::string(info.name)},
                                    {"description", std::string(info.description)}});
-  facts.add("integrator", std::move(methods));
+    texts.push_back(fmt::format("{}: {}", info.name, info.description));
+  }
+  facts.add("integrators", std::move(methods), texts);
 }
 
 void info(const std::string& path, const Console& console) {
@@ -139,7 +134,7 @@ void addInfo(CLI::App& program, Console& console) {
   CLI::App& command =
       *program.add_subcommand("info", "Tell what is in a file, or about the program");
   const auto path = std::make_shared<std::string>();
-  command.add_option("FILE", *path, "A *.fascia.json or *.fcache file");
+  command.add_option("FILE", *path, "A *.fascia.json or *.fcache file")->type_name("");
   console.addFlags(command);
   command.footer(kFooter);
   command.callback([path, &console] { info(*path, console); });

@@ -10,8 +10,7 @@ namespace {
 
 enum ExitCode { ok = 0, badInput = 1, badUsage = 2 };
 
-constexpr const char* kFooter = R"(
-Examples:
+constexpr const char* kFooter = R"(Examples:
   fascia check examples/penguin.fascia.json
   fascia bake examples/penguin.fascia.json -o penguin.glb
   fascia render examples/penguin.fascia.json -o penguin.mp4
@@ -42,10 +41,14 @@ int run(CLI::App& program, fascia::Console& console, int argc, char** argv) {
 int main(int argc, char** argv) {
   fascia::watchInterrupts();
   fascia::Console console;
-  CLI::App program("Layered elastic characters: a skeleton, flesh on it, and a skin that lives.");
+  CLI::App program("Layered elastic characters: a skeleton, flesh on it, and a skin that lives.",
+                   "fascia");
   program.footer(kFooter);
   program.set_version_flag("--version", "fascia " FASCIA_VERSION);
-  program.require_subcommand(1);
+  program.require_subcommand(0, 1);  // none is refused below: an unknown one then gets named
+  program.callback([&program] {
+    if (program.get_subcommands().empty()) throw CLI::RequiredError("A command");
+  });
   program.failure_message(CLI::FailureMessage::simple);
   fascia::addBake(program, console);
   fascia::addRender(program, console);

@@ -50,7 +50,7 @@ void reportRecording(const Recording& recording, const std::vector<std::string>&
                      const Console& console) {
   const double ratio = recording.wall_s > 0 ? recording.simulated_s / recording.wall_s : 0;
   console.say(
-      fmt::format("{} frames, {} vertices: simulated {:.2f} s in {:.2f} s ({:.0f} × real time)",
+      fmt::format("{} frames, {} vertices: simulated {:.4g} s in {:.2g} s ({:.0f} × real time)",
                   recording.frames.size(), recording.skin.positions.size(), recording.simulated_s,
                   recording.wall_s, ratio));
   Json::List written;

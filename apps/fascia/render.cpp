@@ -21,8 +21,8 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter = R"(
-INPUT is a character, which is simulated first, or a cache that 'fascia bake' wrote. A .png shows
+constexpr const char* kFooter =
+    R"(INPUT is a character, which is simulated first, or a cache that 'fascia bake' wrote. A .png shows
 the moment --time, a .mp4 the whole motion (without ffmpeg: a folder of pictures).
 
 Cameras: front, side, back, top, three-quarter; az=30,el=15 (degrees), with dist=2 or fov=40;
@@ -159,15 +159,20 @@ std::function<std::string(const std::string&)> parsedBy(Parser parse) {
 
 void addPictureOptions(CLI::App& command, RenderOptions& options) {
   command.add_option("--time", options.time_s, "Moment of a picture, in seconds (default: 0)")
-      ->check(CLI::Range(0.0, 86400.0));
+      ->type_name("SECONDS")
+      ->check(numberIn(0, 86400));
   command.add_option("--size", options.size, "Of the picture (default: 1280x720)")
+      ->type_name("WxH")
       ->check([](const std::string& text) { return sizeProblem(text, 1, Renderer::kMaxSide); });
   command.add_option("--camera", options.camera, "From where (default: three-quarter); see below")
+      ->type_name("VIEW")
       ->check(parsedBy(parseCamera));
   command.add_option("--layers", options.layers, "What to show: skeleton, muscle, skin or all")
+      ->type_name("LIST")
       ->check(parsedBy(parseLayers));
   command.add_option("--fps", options.frame_rate_hz, "Frames per second of a video (default: 30)")
-      ->check(CLI::Range(1.0, 240.0));
+      ->type_name("HZ")
+      ->check(numberIn(1, 240));
 }
 
 }  // namespace
@@ -175,12 +180,16 @@ void addPictureOptions(CLI::App& command, RenderOptions& options) {
 void addRender(CLI::App& program, Console& console) {
   CLI::App& command = *program.add_subcommand("render", "Draw a picture or a video");
   const auto options = std::make_shared<RenderOptions>();
-  command.add_option("INPUT", options->input, "A *.fascia.json or *.fcache file")->required();
+  command.add_option("INPUT", options->input, "A *.fascia.json or *.fcache file")
+      ->required()
+      ->type_name("");
   command.add_option("-o,--output", options->output, "File to write: .png or .mp4")
+      ->type_name("FILE")
       ->required()
       ->check(endsIn({".png", ".mp4"}));
   addPictureOptions(command, *options);
-  command.add_option("--stats", options->stats, "Write how the simulation went to this JSON file");
+  command.add_option("--stats", options->stats, "Write how the simulation went to this JSON file")
+      ->type_name("FILE");
   options->simulation.addTo(command);
   console.addFlags(command);
   command.footer(kFooter);

@@ -4,7 +4,10 @@
 #include <sstream>
 #include <vector>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
+#include <fascia/math/ode/integrators.h>
 
 #include "interrupt.h"
 #include "progress.h"
@@ -14,27 +17,40 @@ namespace {
 
 constexpr int kMinGrid = 8, kMaxGrid = 4096;  // as in SkinDef
 
-const std::vector<std::string>& integratorNames() {
-  static const std::vector<std::string> names = {"auto", "euler", "implicit-euler", "verlet",
-                                                 "rk2",  "rk4",   "rosenbrock4",    "xpbd"};
+// The skin's own two, and every method of the solver library.
+std::vector<std::string> integratorNames() {
+  std::vector<std::string> names = {"auto", "leapfrog"};
+  for (const IntegratorInfo& info : integrators()) names.emplace_back(info.name);
   return names;
 }
 
 }  // namespace
 
 void SimulationOptions::addTo(CLI::App& command) {
-  command.add_option("--motion", motion, "Motion to simulate, by name (default: the first)");
-  command.add_option("--duration", duration_s, "Seconds to simulate (default: the motion's)")
-      ->check(CLI::Range(1e-3, 86400.0));
+  command.add_option("--motion", motion, "Motion to simulate (default: the first)")
+      ->type_name("NAME");
+  command.add_option("--duration", duration_s, "How long to simulate (default: the motion's)")
+      ->type_name("SECONDS")
+      ->check(numberIn(1e-3, 86400));
   command.add_option("--grid", grid, "Skin points around x along, such as 64x16")
+      ->type_name("MxN")
       ->check([](const std::string& text) { return sizeProblem(text, kMinGrid, kMaxGrid); });
-  command.add_option("--integrator", integrator, "How the skin steps through time")
-      ->check(CLI::IsMember(integratorNames()));
   command
-      .add_option("--step", step_s, "Time step in seconds; 0 = chosen (default: as in the file)")
-      ->check(CLI::Range(0.0, 1.0 / 12));
+      .add_option(
+          "--integrator", integrator,
+          fmt::format("How the skin steps through time: {}", fmt::join(integratorNames(), ", ")))
+      ->type_name("NAME")
+      ->check(CLI::IsMember(integratorNames()).description(""));
+  command.add_option("--step", step_s, "Time step; 0 = chosen (default: as in the file)")
+      ->type_name("SECONDS")
+      ->check(numberIn(0, 1.0 / 12));
   command.add_option("--threads", threads, "Threads to use; 0 = all. The result is the same")
-      ->check(CLI::Range(0, 1024));
+      ->type_name("N")
+      ->check(numberIn(0, 1024));
+}
+
+CLI::Validator numberIn(double low, double high) {
+  return CLI::Range(low, high).description("");
 }
 
 BuildOptions SimulationOptions::buildOptions() const {

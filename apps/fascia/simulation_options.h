@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include <CLI/CLI.hpp>
+
 #include <fascia/character/character.h>
 #include <fascia/character/recording.h>
 
@@ -31,6 +33,9 @@ struct Size {
 Size parseSize(const std::string& text);
 // For CLI11: empty, or what is wrong with the text as a size whose sides are in [low, high].
 std::string sizeProblem(const std::string& text, int low, int high);
+
+// A CLI11 check whose range stays out of the help.
+CLI::Validator numberIn(double low, double high);
 
 // The index of the motion to use; -1 = the character has none. Throws for an unknown name.
 int chooseMotion(const Character& character, const std::string& name);

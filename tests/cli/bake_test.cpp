@@ -23,7 +23,7 @@ std::string hashOf(const Outcome& outcome) {
 
 TEST_F(Cli, BakeWritesEveryFormatFromOneSimulation) {
   const Outcome outcome =
-      run({"bake", "ball.fascia.json", "-o", "a.glb", "-o", "a.pc2", "-o", "a.fcache"});
+      run({"bake", "-o", "a.glb", "-o", "a.pc2", "-o", "a.fcache", "ball.fascia.json"});
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_THAT(content("a.glb"), StartsWith("glTF"));
   EXPECT_THAT(content("a.pc2"), StartsWith("POINTCACHE2"));

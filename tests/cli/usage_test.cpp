@@ -27,7 +27,7 @@ TEST_F(Cli, BadUsageEndsWithTwoAndSaysWhatIsWrong) {
     std::string told;
   };
   const std::vector<Case> cases = {
-      {{}, "subcommand"},
+      {{}, "A command is required"},
       {{"boil"}, "boil"},
       {{"bake"}, "CHARACTER"},
       {{"bake", "ball.fascia.json"}, "--output"},
@@ -116,8 +116,8 @@ TEST_F(Cli, InfoDescribesCharacterAndProgram) {
   const nlohmann::json ball = run({"info", "ball.fascia.json", "--json"}).json();
   EXPECT_EQ(ball.at("name"), "ball");
   EXPECT_EQ(ball.at("skin_points"), 16 * 12);
-  EXPECT_EQ(ball.at("motion").at(0).at("name"), "hop");
-  EXPECT_EQ(ball.at("motion").at(0).at("duration_s"), 0.5);
+  EXPECT_EQ(ball.at("motions").at(0).at("name"), "hop");
+  EXPECT_EQ(ball.at("motions").at(0).at("duration_s"), 0.5);
   const nlohmann::json program = run({"info", "--json"}).json();
   EXPECT_GT(program.at("threads"), 0);
   EXPECT_FALSE(program.at("opengl").get<std::string>().empty());

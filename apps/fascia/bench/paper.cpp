@@ -15,8 +15,8 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter = R"(
-The three characters of Turner & Gobbetti (1998), Table 1, with 1024 skin points each, on one
+constexpr const char* kFooter =
+    R"(The three characters of Turner & Gobbetti (1998), Table 1, with 1024 skin points each, on one
 thread. "× real time" is simulated seconds per second of computing.
 
 Examples:
@@ -122,15 +122,21 @@ void runPaper(const PaperOptions& options, const Console& console) {
 void addPaperBench(CLI::App& group, Console& console) {
   CLI::App& command = *group.add_subcommand("paper", "The paper's Table 1 beside ours");
   const auto options = std::make_shared<PaperOptions>();
-  command.add_option("--examples", options->folder, "Folder of the three character files");
+  command.add_option("--examples", options->folder, "Folder of the three character files")
+      ->type_name("FOLDER");
   command.add_option("--characters", options->characters, "Which of penguin, wombat, torso")
       ->delimiter(',')
-      ->check(CLI::IsMember({"penguin", "wombat", "torso"}));
-  command.add_option("--integrators", options->integrators, "Which ways of stepping")
+      ->allow_extra_args(false)
+      ->type_name("LIST")
+      ->check(CLI::IsMember({"penguin", "wombat", "torso"}).description(""));
+  command.add_option("--integrators", options->integrators, "Which of euler, verlet, rk2, auto")
       ->delimiter(',')
-      ->check(CLI::IsMember({"euler", "verlet", "rk2", "auto"}));
+      ->allow_extra_args(false)
+      ->type_name("LIST")
+      ->check(CLI::IsMember({"euler", "verlet", "rk2", "auto"}).description(""));
   command.add_option("--seconds", options->seconds, "Simulated seconds each (default: 2)")
-      ->check(CLI::Range(0.1, 3600.0));
+      ->type_name("SECONDS")
+      ->check(numberIn(0.1, 3600));
   console.addFlags(command);
   command.footer(kFooter);
   command.callback([options, &console] { runPaper(*options, console); });
