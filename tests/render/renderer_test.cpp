@@ -126,6 +126,7 @@ TEST(Renderer, SkinGlowsRedWhereTheLightEnds) {
   FASCIA_REQUIRE_GL();
   Scene scene = framed({sphere({0, 0, 0}, 0.1f, {0.86f, 0.66f, 0.56f}, Material::Kind::skin)});
   scene.studio.key.direction = Vec3(1, 0, 0);
+  scene.drawables[0].material.translucency = 0;  // scattering around, not through
   const auto redness = [&](float scatter_m) {
     scene.drawables[0].material.scatter_m = scatter_m;
     const Pixels picture = draw(scene);

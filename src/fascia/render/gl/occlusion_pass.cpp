@@ -7,7 +7,7 @@
 namespace fascia::gl {
 namespace {
 
-constexpr int kFullSizePixels = 400'000;   // larger pictures are worked on at half size
+constexpr int kFullSizePixels = 150'000;   // larger pictures are worked on at half size
 constexpr float kOcclusionRadius = 0.22f;  // of the subject's radius; larger: darker and vaguer
 
 void drawFullScreen(const VertexArray& noArrays) {
