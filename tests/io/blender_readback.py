@@ -6,6 +6,11 @@ import array
 import sys
 
 import bpy
+import numpy
+
+# Debian 12's importer still uses the name that its numpy has dropped.
+if "bool" not in vars(numpy):
+    numpy.bool = bool
 
 TOLERANCE_M = 1e-5
 

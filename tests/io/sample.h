@@ -55,7 +55,13 @@ inline const char* const kFull = R"({
     {"name": "bone", "joint": "elbow", "shape": "sphere", "radius_m": 0.07}
   ],
   "ornaments": [
-    {"name": "watch", "joint": "elbow", "shape": "sphere", "radius_m": 0.01, "color": [0.1, 0.2, 0.3]}
+    {
+      "name": "watch",
+      "joint": "elbow",
+      "shape": "sphere",
+      "radius_m": 0.01,
+      "color": [0.1, 0.2, 0.3]
+    }
   ],
   "skin": {
     "grid": [16, 8],
@@ -78,8 +84,8 @@ inline const char* const kFull = R"({
     "points": {
       "columns": 3,
       "rows": 2,
-      "fat_m": ["0.01*2 0.012", "0.1*3"],
       "prestretch": 1.1,
+      "fat_m": ["0.01*2 0.012", "0.1*3"],
       "anchor_solid": ["0*3", "0 -1*2"],
       "anchor": ["0.5,0,1*3", "0,0,-1 0,0,0*2"]
     }
