@@ -224,6 +224,23 @@ TEST(CharacterFile, MissingTextureHasALine) {
   }
 }
 
+TEST(CharacterFile, FaultsFoundWhileBuildingHaveALine) {
+  const std::string cyclic = replaced(sample::kArm, "\"name\": \"shoulder\",",
+                                      "\"name\": \"shoulder\", \"parent\": \"elbow\",");
+  const std::string nowhere = replaced(sample::kArm, "\"joint\": \"elbow\", \"radius_m\": 0.2",
+                                       "\"joint\": \"elbov\", \"radius_m\": 0.2");
+  const std::pair<std::string, int> cases[] = {{cyclic, 5}, {nowhere, 10}};
+  for (const auto& [text, line] : cases) {
+    try {
+      buildCharacter(readCharacterText(text, "x.fascia.json"));
+      FAIL() << "built a character that cannot be";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.issues().front().where.file, "x.fascia.json");
+      EXPECT_EQ(error.issues().front().where.line, line) << error.what();
+    }
+  }
+}
+
 TEST(LineIndex, FindsPlacesAndTheirAncestors) {
   const LineIndex lines = readCharacterText(sample::kFull, "f").lines;
   EXPECT_EQ(lines.locate("/skeleton/1/parent").line, 9);

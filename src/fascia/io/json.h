@@ -24,16 +24,22 @@ class Json {
   };
   enum class Kind { null, boolean, number, text, list, object };
 
-  Json() = default;
-  Json(bool value) : value_(value) {}                           // NOLINT: values convert
-  Json(double value);                                           // NOLINT; shortest digits
-  Json(int value) : value_(Number{std::to_string(value)}) {}    // NOLINT
-  Json(Number value) : value_(std::move(value)) {}              // NOLINT
-  Json(std::string value) : value_(std::move(value)) {}         // NOLINT
-  Json(std::string_view value) : value_(std::string(value)) {}  // NOLINT
-  Json(const char* value) : value_(std::string(value)) {}       // NOLINT
-  Json(List value) : value_(std::move(value)) {}                // NOLINT
-  Json(Object value) : value_(std::move(value)) {}              // NOLINT
+  // Defined below: Member must be complete.
+  Json();
+  Json(bool value);              // NOLINT: values convert
+  Json(double value);            // NOLINT: shortest digits
+  Json(int value);               // NOLINT
+  Json(Number value);            // NOLINT
+  Json(std::string value);       // NOLINT
+  Json(std::string_view value);  // NOLINT
+  Json(const char* value);       // NOLINT
+  Json(List value);              // NOLINT
+  Json(Object value);            // NOLINT
+  Json(const Json& other);
+  Json(Json&& other) noexcept;
+  Json& operator=(const Json& other);
+  Json& operator=(Json&& other) noexcept;
+  ~Json();
 
   Kind kind() const { return static_cast<Kind>(value_.index()); }
   bool is(Kind k) const { return kind() == k; }
@@ -62,6 +68,21 @@ struct Json::Member {
   std::string key;
   Json value;
 };
+
+inline Json::Json() = default;
+inline Json::Json(bool value) : value_(value) {}
+inline Json::Json(int value) : value_(Number{std::to_string(value)}) {}
+inline Json::Json(Number value) : value_(std::move(value)) {}
+inline Json::Json(std::string value) : value_(std::move(value)) {}
+inline Json::Json(std::string_view value) : value_(std::string(value)) {}
+inline Json::Json(const char* value) : value_(std::string(value)) {}
+inline Json::Json(List value) : value_(std::move(value)) {}
+inline Json::Json(Object value) : value_(std::move(value)) {}
+inline Json::Json(const Json& other) = default;
+inline Json::Json(Json&& other) noexcept = default;
+inline Json& Json::operator=(const Json& other) = default;
+inline Json& Json::operator=(Json&& other) noexcept = default;
+inline Json::~Json() = default;
 
 // What a stranger's file may cost us: beyond these it is refused.
 struct JsonLimits {
