@@ -39,15 +39,18 @@ void checkSimulation(const SimulationDef& s, Diagnostics& diagnostics) {
                     "found '" + s.integrator + "', expected one of " + names);
 }
 
-SkinSettings settingsOf(const SimulationDef& s) {
-  return {s.gravity_m_per_s2,
-          s.integrator,
-          s.step_s,
-          s.min_step_s,
-          s.max_step_s,
-          s.position_tolerance_m,
-          s.velocity_tolerance,
-          s.correction_tolerance_m};
+SkinSettings settingsOf(const SimulationDef& s, const BuildOptions& options) {
+  SkinSettings out;
+  out.gravity_m_per_s2 = s.gravity_m_per_s2;
+  out.integrator = s.integrator;
+  out.step_s = s.step_s;
+  out.min_step_s = s.min_step_s;
+  out.max_step_s = s.max_step_s;
+  out.position_tolerance_m = s.position_tolerance_m;
+  out.velocity_tolerance = s.velocity_tolerance;
+  out.correction_tolerance_m = s.correction_tolerance_m;
+  if (options.interval_s > 0) out.interval_s = options.interval_s;
+  return out;
 }
 
 // Poses the layers below the skin at any time of a motion, in the state's own memory.
@@ -122,7 +125,7 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
     const Posture rest = skeleton_.restPosture();
     skeleton_.pose(rest, posedSkeleton);
     flesh_.pose(rest, posedSkeleton, {}, posedFlesh);
-    skin_ = std::make_unique<Skin>(*def_.skin, settingsOf(def_.simulation),
+    skin_ = std::make_unique<Skin>(*def_.skin, settingsOf(def_.simulation, options),
                                    SkinBase{skeleton_, flesh_, posedSkeleton, posedFlesh}, "/skin",
                                    diagnostics);
   }

@@ -16,6 +16,7 @@ struct BuildOptions {
   int columns = 0, rows = 0;  // 0 = as in the file
   std::string integrator;     // empty = as in the file
   double step_s = -1;         // negative = as in the file
+  double interval_s = 0;      // see SkinSettings; 0 = the usual one (references want it short)
 };
 
 // A constant, validated character: skeleton, flesh, skin and motions ready to run.

@@ -39,7 +39,7 @@ struct BlockTest {
     lanes.nearest.fill(1e30f);
     float deepest = 0;
     for (const std::int32_t s : nearby.first(nearbyCount)) {
-      field.evaluate(SolidId(s), lanes.inner.view(block.count), lanes.distance.data(),
+      field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
                      lanes.normal.view(block.count));
       deepest = std::max(deepest, absorbSolid(static_cast<float>(s), move, block.count, lanes));
     }
@@ -63,7 +63,7 @@ struct BlockTest {
       const auto solid = static_cast<float>(s);
       const auto end = lanes.nearestSolid.begin() + block.count;
       if (std::find(lanes.nearestSolid.begin(), end, solid) == end) continue;
-      field.velocity(SolidId(s), lanes.inner.view(block.count), velocity.view(block.count));
+      field.velocity(SolidId(s), lanes.place.view(block.count), velocity.view(block.count));
       absorbVelocity(solid, velocity, lanes);
     }
   }
@@ -81,8 +81,7 @@ FleshContact::FleshContact(std::vector<PointBlock> blocks)
     : blocks_(std::move(blocks)), results_(blocks_.size()) {}
 
 FleshContact::Result FleshContact::project(const Field& field, const PointModel& points,
-                                           const VectorArray& skinNormal, float reach_m,
-                                           float restitution, VectorArray& position,
+                                           float reach_m, float restitution, VectorArray& position,
                                            VectorArray& velocity, PointSurroundings& around) {
   readBoxes(field, boxes_);
   const std::size_t tasks = (blocks_.size() + kBlocksPerTask - 1) / kBlocksPerTask;
@@ -92,7 +91,7 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
     const std::span scratch(nearby_.data() + t * boxes_.size(), boxes_.size());
     const std::size_t end = std::min(blocks_.size(), (t + 1) * kBlocksPerTask);
     for (std::size_t b = t * kBlocksPerTask; b < end; ++b) {
-      const BlockBox box = loadContactLanes(blocks_[b], position, skinNormal, points.fat, lanes);
+      const BlockBox box = loadContactLanes(blocks_[b], position, points.fat, lanes);
       BlockTest test{field, blocks_[b], lanes, scratch};
       const bool any = test.findSolids(box, boxes_, reach_m);
       results_[b].maxCorrection_m = any ? test.leaveSolids(kPasses) : 0;
@@ -112,14 +111,14 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
 }
 
 float FleshContact::deepest(const Field& field, const PointModel& points,
-                            const VectorArray& skinNormal, const VectorArray& position) const {
+                            const VectorArray& position) const {
   std::vector<Box> boxes;
   readBoxes(field, boxes);
   std::vector<std::int32_t> nearby(boxes.size());
   ContactLanes lanes{};
   float depth = 0;
   for (const PointBlock& block : blocks_) {
-    const BlockBox box = loadContactLanes(block, position, skinNormal, points.fat, lanes);
+    const BlockBox box = loadContactLanes(block, position, points.fat, lanes);
     BlockTest test{field, block, lanes, nearby};
     if (test.findSolids(box, boxes, 0)) depth = std::max(depth, test.visit(false));
   }

@@ -9,9 +9,11 @@
 
 namespace fascia {
 
-// Non-penetration of skin and flesh (spec L10, L11): every point, moved inward by its fat along the
-// skin's normal, stays outside of every solid. Works on blocks of points and knows nothing of how
-// points are connected.
+// Non-penetration of skin and flesh (spec L10, L11): every point keeps the distance of its fat τ
+// from every solid. The paper tests the point moved inward along the skin's normal, g(r − τ n) ≥ 0;
+// as a distance changes at most as fast as its point moves, d(r) ≥ τ implies that for every n, also
+// where the skin folds and its normal is doubtful. Works on blocks of points and knows nothing of
+// how points are connected.
 class FleshContact {
  public:
   FleshContact() = default;
@@ -27,13 +29,11 @@ class FleshContact {
   // the steps that follow: the nearest solid within `reach_m`.
   // Candidate solids come from boxes of blocks against boxes of solids; a point in several solids
   // is projected in turn until it is outside of all, or kPasses are used up.
-  Result project(const Field& field, const PointModel& points, const VectorArray& skinNormal,
-                 float reach_m, float restitution, VectorArray& position, VectorArray& velocity,
-                 PointSurroundings& around);
+  Result project(const Field& field, const PointModel& points, float reach_m, float restitution,
+                 VectorArray& position, VectorArray& velocity, PointSurroundings& around);
 
   // How deep the deepest point is (m, ≥ 0), measured afresh and without changing anything.
-  float deepest(const Field& field, const PointModel& points, const VectorArray& skinNormal,
-                const VectorArray& position) const;
+  float deepest(const Field& field, const PointModel& points, const VectorArray& position) const;
 
  private:
   static constexpr int kPasses = 8;

@@ -41,21 +41,21 @@ struct OdeSkin::Strand {
 OdeSkin::OdeSkin(const Skin& skin)
     : skin_(skin),
       stepper_(makeIntegrator(skin.settings().integrator), optionsOf(skin)),
-      inverseMass_(3 * skin.pointCount()) {
+      inverseMass_(3 * skin.pointCount()),
+      storage_(skin.pointCount()) {
   for (std::size_t p = 0; p < skin.pointCount(); ++p) {
-    const std::size_t k = skin.storageIndex(p);
+    const std::size_t k = storage_[p] = skin.storageIndex(p);
     const double inverse = skin.points().free[k] > 0 ? 1.0 / skin.points().mass[k] : 0;
     for (std::size_t c = 0; c < 3; ++c) inverseMass_[3 * p + c] = inverse;
   }
   ode_.resize(inverseMass_.size());
-  for (VectorArray* a : {&position_, &velocity_, &force_, &normal_})
-    a->resize(skin.layout().storage());
+  for (VectorArray* a : {&position_, &velocity_, &force_}) a->resize(skin.layout().storage());
   scratch_.resize(skin.layout());
 }
 
 void OdeSkin::load(std::span<const double> r, VectorArray& out) const {
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = skin_.storageIndex(p);
+    const std::size_t k = storage_[p];
     out.x[k] = static_cast<float>(r[3 * p]);
     out.y[k] = static_cast<float>(r[3 * p + 1]);
     out.z[k] = static_cast<float>(r[3 * p + 2]);
@@ -69,7 +69,7 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, Flesh
   poses_ = &poses, contact_ = &contact, state_ = &state;
   ode_.t_s = start_s;
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = skin_.storageIndex(p);
+    const std::size_t k = storage_[p];
     const VectorArray* arrays[2] = {&state.position, &state.velocity};
     std::vector<double>* flat[2] = {&ode_.r, &ode_.v};
     for (int a = 0; a < 2; ++a) {
@@ -96,7 +96,7 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, Flesh
 
 OdeSkin::Strand OdeSkin::strand(std::size_t p, double t_s, std::span<const double> r,
                                 std::span<const double> v) const {
-  const std::size_t k = skin_.storageIndex(p);
+  const std::size_t k = storage_[p];
   Strand s;
   if (skin_.points().tissueStiffness[k] <= 0) return s;
   const PointSurroundings& around = state_->surroundings;
@@ -120,7 +120,7 @@ void OdeSkin::addPositionForces(double t_s, std::span<const double> r, std::span
   if (skin_.bending().active()) skin_.bending().addForces(position_, force_);
   const Vec3& gravity = skin_.settings().gravity_m_per_s2;
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = skin_.storageIndex(p);
+    const std::size_t k = storage_[p];
     const Strand s = strand(p, t_s, r, {});
     const double pull =
         s.taut ? points.tissueStiffness[k] * (s.length - points.tissueRestLength[k]) : 0;
@@ -135,7 +135,7 @@ void OdeSkin::addVelocityForces(double t_s, std::span<const double> r, std::span
                                 std::span<double> f) {
   const PointModel& points = skin_.points();
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = skin_.storageIndex(p);
+    const std::size_t k = storage_[p];
     const Strand s = strand(p, t_s, r, v);
     for (int c = 0; c < 3; ++c) {
       const std::size_t i = 3 * p + static_cast<std::size_t>(c);
@@ -154,7 +154,7 @@ void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<con
   skin_.elastic().addForceJacobian(position_, false, entries_);
   if (skin_.bending().active()) skin_.bending().addForceJacobian(position_, entries_);
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = skin_.storageIndex(p);
+    const std::size_t k = storage_[p];
     const Strand s = strand(p, t_s, r, v);
     Mat3 stiffness = Mat3::Zero(), damping = points.drag[k] * Mat3::Identity();
     if (s.taut) {
@@ -180,24 +180,23 @@ void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<con
 
 double OdeSkin::violation(double t_s, std::span<const double> r) {
   load(r, position_);
-  gridNormals(skin_.layout(), position_, 0, skin_.rows(), normal_);
-  return contact_->deepest(*poses_->at(t_s).field, skin_.points(), normal_, position_);
+  return contact_->deepest(*poses_->at(t_s).field, skin_.points(), position_);
 }
 
 double OdeSkin::project(double t_s, std::span<double> r, std::span<double> v) {
   load(r, position_);
   load(v, velocity_);
-  gridNormals(skin_.layout(), position_, 0, skin_.rows(), normal_);
-  const VectorArray before = position_, velocityBefore = velocity_;
+  positionBefore_ = position_;
+  velocityBefore_ = velocity_;
   const FleshContact::Result result =
-      contact_->project(*poses_->at(t_s).field, skin_.points(), normal_, 0.f,
+      contact_->project(*poses_->at(t_s).field, skin_.points(), 0.f,
                         static_cast<float>(skin_.contactResponse().restitution), position_,
                         velocity_, state_->surroundings);
   // Only what was changed goes back: the rest keeps its double precision.
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = skin_.storageIndex(p);
+    const std::size_t k = storage_[p];
     const VectorArray* now[2] = {&position_, &velocity_};
-    const VectorArray* old[2] = {&before, &velocityBefore};
+    const VectorArray* old[2] = {&positionBefore_, &velocityBefore_};
     const std::span<double> flat[2] = {r, v};
     for (int a = 0; a < 2; ++a) {
       flat[a][3 * p] += double{now[a]->x[k]} - old[a]->x[k];

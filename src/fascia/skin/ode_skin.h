@@ -37,8 +37,9 @@ class OdeSkin final : public SecondOrderSystem {
   const Skin& skin_;
   AdaptiveStepper stepper_;
   std::vector<double> inverseMass_;
+  std::vector<std::size_t> storage_;  // of point p
   OdeState ode_;
-  VectorArray position_, velocity_, force_, normal_;
+  VectorArray position_, velocity_, positionBefore_, velocityBefore_, force_;
   SweepScratch scratch_;
   std::vector<Eigen::Triplet<double>> entries_, dampingEntries_;
 

@@ -20,30 +20,27 @@ inline Pointers pointers(const ContactLanes::Lanes3& a) {
   return {a.x.data(), a.y.data(), a.z.data()};
 }
 
-BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const VectorArray& normal,
-                  const FloatArray& fat, ContactLanes& lanes) {
+BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const FloatArray& fat,
+                  ContactLanes& lanes) {
   const D d;
   const V big = hn::Set(d, 1e30f);
-  const V3 none{big, big, big};
-  V3 low = none, high = scaled(hn::Set(d, -1.f), none);
+  V3 low{big, big, big}, high = scaled(hn::Set(d, -1.f), low);
   for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
     const std::size_t k = block.first + l;
-    const V3 inner = mulAdd(hn::Neg(hn::LoadU(d, fat.data() + k)), pointers(normal).at(k),
-                            pointers(position).at(k));
-    pointers(lanes.inner).set(l, inner);
-    pointers(lanes.start).set(l, inner);
-    hn::StoreU(big, d, lanes.nearest.data() + l);
+    const V3 r = pointers(position).at(k);
+    const V thickness = hn::LoadU(d, fat.data() + k);
+    pointers(lanes.place).set(l, r);
+    hn::StoreU(thickness, d, lanes.fat.data() + l);
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));
-    const V3 forLow = select(used, inner, none);
-    const V3 forHigh = select(used, inner, scaled(hn::Set(d, -1.f), none));
+    const V3 around{thickness, thickness, thickness};
+    const V3 forLow = select(used, r - around, low), forHigh = select(used, r + around, high);
     low = {hn::Min(low.x, forLow.x), hn::Min(low.y, forLow.y), hn::Min(low.z, forLow.z)};
     high = {hn::Max(high.x, forHigh.x), hn::Max(high.y, forHigh.y), hn::Max(high.z, forHigh.z)};
   }
-  return {{hn::GetLane(hn::MinOfLanes(d, low.x)), hn::GetLane(hn::MinOfLanes(d, low.y)),
-           hn::GetLane(hn::MinOfLanes(d, low.z))},
-          {hn::GetLane(hn::MaxOfLanes(d, high.x)), hn::GetLane(hn::MaxOfLanes(d, high.y)),
-           hn::GetLane(hn::MaxOfLanes(d, high.z))}};
+  const auto least = [&](V v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
+  const auto most = [&](V v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+  return {{least(low.x), least(low.y), least(low.z)}, {most(high.x), most(high.y), most(high.z)}};
 }
 
 float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
@@ -52,14 +49,15 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
   for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(count)));
-    const V distance =
-        hn::IfThenElse(used, hn::LoadU(d, lanes.distance.data() + l), hn::Set(d, 1e30f));
-    const V depth = hn::Max(hn::Neg(distance), hn::Zero(d));
+    const V gap = hn::IfThenElse(
+        used, hn::Sub(hn::LoadU(d, lanes.distance.data() + l), hn::LoadU(d, lanes.fat.data() + l)),
+        hn::Set(d, 1e30f));
+    const V depth = hn::Max(hn::Neg(gap), hn::Zero(d));
     deepest = hn::Max(deepest, depth);
     const V3 normal = pointers(lanes.normal).at(l);
-    const MutablePointers inner = pointers(lanes.inner);
-    if (move) inner.set(l, select(used, mulAdd(depth, normal, inner.at(l)), inner.at(l)));
-    const V outside = hn::Max(distance, hn::Zero(d));
+    const MutablePointers place = pointers(lanes.place);
+    if (move) place.set(l, select(used, mulAdd(depth, normal, place.at(l)), place.at(l)));
+    const V outside = hn::Max(gap, hn::Zero(d));
     const V nearest = hn::LoadU(d, lanes.nearest.data() + l);
     const auto nearer = hn::Lt(outside, nearest);
     hn::StoreU(hn::Min(outside, nearest), d, lanes.nearest.data() + l);
@@ -101,12 +99,13 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
       const V nearest = hn::LoadU(d, lanes.nearest.data() + l);
       const auto isFree = hn::Gt(hn::LoadU(d, points.free.data() + k), zero);
       const auto touching = hn::And(hn::And(used, isFree), hn::Le(nearest, hn::Set(d, reach)));
-      const auto onFlesh = hn::And(touching, hn::Le(nearest, zero));
+      // A point that was moved out of a solid may end a rounding error outside of it.
+      const V3 place = r.at(k), way = pointers(lanes.place).at(l) - place;
+      const auto moved = hn::Gt(dot(way, way), zero);
+      const auto onFlesh = hn::And(touching, hn::Or(moved, hn::Le(nearest, zero)));
       const V3 normal = select(touching, pointers(lanes.nearestNormal).at(l), zero3);
       const V3 flesh = select(touching, pointers(lanes.fleshVelocity).at(l), zero3);
-      const V3 moved = pointers(lanes.inner).at(l) - pointers(lanes.start).at(l);
-      const V3 place = r.at(k);
-      const V3 now = select(onFlesh, place + moved, place);
+      const V3 now = select(onFlesh, pointers(lanes.place).at(l), place);
       const V approach = hn::Min(dot(normal, speed - flesh), zero);
       speed = select(
           onFlesh, mulAdd(hn::Mul(hn::Set(d, -1.f - restitution), approach), normal, speed), speed);
@@ -184,9 +183,8 @@ HWY_EXPORT(followCarrierImpl);
 HWY_EXPORT(brokenImpl);
 
 BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
-                          const VectorArray& skinNormal, const FloatArray& fat,
-                          ContactLanes& lanes) {
-  return HWY_DYNAMIC_DISPATCH(loadImpl)(block, position, skinNormal, fat, lanes);
+                          const FloatArray& fat, ContactLanes& lanes) {
+  return HWY_DYNAMIC_DISPATCH(loadImpl)(block, position, fat, lanes);
 }
 
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {

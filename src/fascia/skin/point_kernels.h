@@ -27,13 +27,13 @@ struct ContactLanes {
     Lanes<float> x, y, z;
     Vectors view(std::size_t n) { return {x.data(), y.data(), z.data(), n}; }
   };
-  Lanes3 inner;                           // r − τ n, moved out of solids as they are visited
-  Lanes3 start;                           // inner before any solid
+  Lanes3 place;                           // r, moved out of solids as they are visited
   Lanes3 normal;                          // written by Field::evaluate
   Lanes3 nearestNormal;                   // of the nearest solid so far
   Lanes3 fleshVelocity;                   // of that solid's matter
+  alignas(64) Lanes<float> fat;           // distance to keep
   alignas(64) Lanes<float> distance;      // written by Field::evaluate
-  alignas(64) Lanes<float> nearest;       // distance to the nearest solid so far, ≥ 0
+  alignas(64) Lanes<float> nearest;       // gap between fat and nearest solid so far, ≥ 0
   alignas(64) Lanes<float> nearestSolid;  // its number (a float, to blend like the rest)
 };
 
@@ -41,10 +41,9 @@ struct BlockBox {
   float low[3], high[3];
 };
 
-// Loads inner = start = r − fat n and resets `nearest`; returns the block's box.
+// Loads a block's places and fat; returns the box of the points with their fat around them.
 BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
-                          const VectorArray& skinNormal, const FloatArray& fat,
-                          ContactLanes& lanes);
+                          const FloatArray& fat, ContactLanes& lanes);
 
 // Takes up the distances and normals to one solid: moves points that are inside out of it (if
 // `move`), keeps the nearest. Returns the largest depth found.

@@ -30,6 +30,9 @@ struct SkinSettings {
   // the step that its waves need; else a name of integrators().
   std::string integrator = "auto";
   double step_s = 0;  // fixed step or first guess; 0 = chosen from the material
+  // Longest time over which the flesh near a point is taken as a flat half space moving at constant
+  // velocity. Longer saves contact tests; shorter follows curved flesh more closely.
+  double interval_s = 1.0 / 120;
   double min_step_s = 1e-5, max_step_s = 0.02;
   double position_tolerance_m = 1e-3;
   double velocity_tolerance = 1e-3;

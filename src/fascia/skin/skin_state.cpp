@@ -29,12 +29,9 @@ void carrySkin(const Skin& skin, const SkinPose& pose, SkinState& state) {
 }
 
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats) {
-  const GridLayout& g = skin.layout();
-  VectorArray normal(g.storage());
-  gridNormals(g, state.position, 0, g.rows, normal);
   const FleshContact contact({skin.blocks().begin(), skin.blocks().end()});
   stats.max_penetration_m = std::max<double>(
-      stats.max_penetration_m, contact.deepest(*pose.field, skin.points(), normal, state.position));
+      stats.max_penetration_m, contact.deepest(*pose.field, skin.points(), state.position));
   stats.max_edge_stretch =
       std::max(stats.max_edge_stretch, skin.elastic().maxStretch(state.position));
 }

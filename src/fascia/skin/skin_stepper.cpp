@@ -9,10 +9,6 @@
 namespace fascia {
 namespace {
 
-// Longest time over which the flesh near a point is taken as a flat half space moving at constant
-// velocity. Longer saves contact tests; shorter follows curved flesh more closely. At 1/120 s a
-// point sliding 0.5 m/s over a 10 cm sphere leaves it by 0.1 mm.
-constexpr double kInterval_s = 1.0 / 120;
 // Steps of a grid that rides on a coarse one: a few relaxations per interval. Longer leaves folds
 // behind in fast motion, shorter costs time in proportion.
 constexpr double kRidingStep_s = 1.0 / 960;
@@ -56,7 +52,7 @@ SkinStepper::SkinStepper(const Skin& skin)
     : skin_(&skin),
       stepper_(skin.layout()),
       contact_({skin.blocks().begin(), skin.blocks().end()}) {
-  for (VectorArray* a : {&normal_, &nextAnchor_, &extraForce_}) a->resize(skin.layout().storage());
+  for (VectorArray* a : {&nextAnchor_, &extraForce_}) a->resize(skin.layout().storage());
   const std::string& integrator = skin.settings().integrator;
   if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
   if (integrator == "auto" && skin.coarse()) {
@@ -71,7 +67,8 @@ void SkinStepper::advance(SkinPoseSource& poses, double start_s, double end_s, S
                           SkinStats& stats) {
   if (!state.ready) begin(poses.at(start_s), state);
   const double span = end_s - start_s;
-  const int intervals = std::max(1, static_cast<int>(std::ceil(span / kInterval_s - 1e-6)));
+  const int intervals =
+      std::max(1, static_cast<int>(std::ceil(span / skin_->settings().interval_s - 1e-6)));
   for (int i = 0; i < intervals; ++i) {
     const double from = start_s + span * i / intervals, to = start_s + span * (i + 1) / intervals;
     if (ode_)
@@ -88,7 +85,7 @@ void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
   state.surroundings.resize(g.storage());
   skin_->anchors().place(*pose.field, scratch_, state.surroundings.anchor);
   SkinStats ignored;
-  settle(pose, kInterval_s, state, ignored);
+  settle(pose, skin_->settings().interval_s, state, ignored);
   if (coarse_) {
     state.coarse.assign(1, resampled(*skin_, state, coarse_->skin()));
     coarse_->begin(pose, state.coarse.front());
@@ -219,12 +216,11 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   }
   if (state.ready) std::swap(state.surroundings.anchor, nextAnchor_);
   fillPads(g, state.position);
-  gridNormals(g, state.position, 0, g.rows, normal_);
   // Twice the way that the fastest point can go until the next test.
   const float reach = 2 * state.maxSpeed_m_per_s * static_cast<float>(duration_s) +
                       0.01f * static_cast<float>(skin_->size_m());
   state.maxSpeed_m_per_s = contact_
-                               .project(*pose.field, skin_->points(), normal_, reach,
+                               .project(*pose.field, skin_->points(), reach,
                                         static_cast<float>(skin_->contactResponse().restitution),
                                         state.position, state.velocity, state.surroundings)
                                .maxSpeed_m_per_s;

@@ -36,7 +36,7 @@ class SkinStepper {
   StepCoefficients coefficients_;
   GridStepper stepper_;
   FleshContact contact_;
-  VectorArray normal_, nextAnchor_, extraForce_, scratch_;
+  VectorArray nextAnchor_, extraForce_, scratch_;
   std::unique_ptr<OdeSkin> ode_;
 
   // The grid that this one rides on, if any.
