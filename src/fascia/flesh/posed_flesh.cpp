@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/field/affine_points.h>
 #include <fascia/field/solid.h>
 #include <fascia/flesh/flesh_bound.h>
 
@@ -32,21 +33,6 @@ void set(Vectors v, std::size_t i, const Vec3& value) {
   v.x[i] = static_cast<float>(value.x());
   v.y[i] = static_cast<float>(value.y());
   v.z[i] = static_cast<float>(value.z());
-}
-
-// out = matrix (in - from) + to, in float: subtracting first keeps the digits far from the origin.
-void affine(const Mat3& matrix, const Vec3& from, const Vec3& to, ConstVectors in, Vectors out) {
-  const Eigen::Matrix3f m = matrix.cast<float>();
-  const Eigen::Vector3f f = from.cast<float>(), t = to.cast<float>();
-  const float xx = m(0, 0), xy = m(0, 1), xz = m(0, 2);
-  const float yx = m(1, 0), yy = m(1, 1), yz = m(1, 2);
-  const float zx = m(2, 0), zy = m(2, 1), zz = m(2, 2);
-  for (std::size_t i = 0; i < in.count; ++i) {
-    const float x = in.x[i] - f.x(), y = in.y[i] - f.y(), z = in.z[i] - f.z();
-    out.x[i] = xx * x + xy * y + xz * z + t.x();
-    out.y[i] = yx * x + yy * y + yz * z + t.y();
-    out.z[i] = zx * x + zy * y + zz * z + t.z();
-  }
 }
 
 // Whether two states of one solid differ by a stretching along its axes. True for every
@@ -151,7 +137,7 @@ void PosedFlesh::evaluate(SolidId solid, ConstVectors points, float* distance_m,
 void PosedFlesh::velocity(SolidId solid, ConstVectors points, Vectors velocity) const {
   const Posed& posed = posed_[solid.index()];
   const Twist& twist = posed.twist;
-  affine(posed.velocityGradient, twist.origin_m, twist.linear_m_per_s, points, velocity);
+  affinePoints(posed.velocityGradient, twist.origin_m, twist.linear_m_per_s, points, velocity);
   if (posed.behindToAhead_s == 0) return;
   const Transform localFromWorld = posed.world.inverse();
   for (std::size_t i = 0; i < points.count; ++i) {
@@ -179,7 +165,7 @@ Vec3 PosedFlesh::worldFromMaterial(SolidId solid, const Vec3& material) const {
 void PosedFlesh::worldFromMaterials(SolidId solid, ConstVectors materials, Vectors world) const {
   const Posed& posed = posed_[solid.index()];
   if (!posed.stretched) return Field::worldFromMaterials(solid, materials, world);
-  affine(posed.world.rotation * posed.stretch.asDiagonal(), Vec3::Zero(), posed.world.translation_m,
+  affinePoints(posed.world.rotation * posed.stretch.asDiagonal(), Vec3::Zero(), posed.world.translation_m,
          materials, world);
 }
 

@@ -12,7 +12,6 @@ HWY_BEFORE_NAMESPACE();
 namespace fascia {
 namespace HWY_NAMESPACE {
 
-constexpr std::size_t kCount = PointBlock::kCapacity;
 inline MutablePointers pointers(ContactLanes::Lanes3& a) {
   return {a.x.data(), a.y.data(), a.z.data()};
 }
@@ -25,7 +24,7 @@ BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const Fl
   const D d;
   const V big = hn::Set(d, 1e30f);
   V3 low{big, big, big}, high = scaled(hn::Set(d, -1.f), low);
-  for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
+  for (std::size_t l = 0; l < block.count; l += hn::Lanes(d)) {
     const std::size_t k = block.first + l;
     const V3 r = pointers(position).at(k);
     const V thickness = hn::LoadU(d, fat.data() + k);
@@ -46,7 +45,7 @@ BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const Fl
 float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
   const D d;
   V deepest = hn::Zero(d);
-  for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
+  for (std::size_t l = 0; l < count; l += hn::Lanes(d)) {
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(count)));
     const V gap = hn::IfThenElse(
@@ -71,7 +70,7 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
 
 void absorbVelocityImpl(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes) {
   const D d;
-  for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
+  for (std::size_t l = 0; l < PointBlock::kCapacity; l += hn::Lanes(d)) {
     const auto mine = hn::Eq(hn::LoadU(d, lanes.nearestSolid.data() + l), hn::Set(d, solid));
     const MutablePointers out = pointers(lanes.fleshVelocity);
     out.set(l, select(mine, pointers(velocity).at(l), out.at(l)));
@@ -85,7 +84,7 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
   const V zero = hn::Zero(d);
   const V3 zero3{zero, zero, zero};
   V fastest = zero;
-  for (std::size_t l = 0; l < kCount; l += hn::Lanes(d)) {
+  for (std::size_t l = 0; l < block.count; l += hn::Lanes(d)) {
     const std::size_t k = block.first + l;
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));

@@ -12,9 +12,10 @@ namespace fascia {
 // SIMD kernels over points, whatever connects them; dispatched at run time.
 
 // Runs of consecutive points in storage order, the unit in which points are tested against solids.
-// The run may be followed by padding: kernels work on kCapacity entries, pads included.
+// Kernels work on whole vectors: reading and rewriting up to 15 entries behind the run is harmless,
+// because rows end in padding.
 struct PointBlock {
-  static constexpr std::size_t kCapacity = 16;  // the widest vector
+  static constexpr std::size_t kCapacity = 32;  // two of the widest vectors hide latency
   std::size_t first;
   std::uint32_t count;
 };
