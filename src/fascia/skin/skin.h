@@ -31,8 +31,9 @@ struct SkinSettings {
   std::string integrator = "auto";
   double step_s = 0;  // fixed step or first guess; 0 = chosen from the material
   // Longest time over which the flesh near a point is taken as a flat half space moving at constant
-  // velocity. Longer saves contact tests; shorter follows curved flesh more closely.
-  double interval_s = 1.0 / 120;
+  // velocity; shorter while joints turn fast. Longer saves contact tests, shorter follows curved
+  // flesh more closely.
+  double interval_s = 1.0 / 60;
   double min_step_s = 1e-5, max_step_s = 0.02;
   double position_tolerance_m = 1e-3;
   double velocity_tolerance = 1e-3;
@@ -113,6 +114,7 @@ struct SkinState {
   PointSurroundings surroundings;  // of the interval that starts now
   VectorArray carrierVelocity;     // of the coarse surface under each point (see leapfrog.h), m/s
   std::vector<SkinState> coarse;   // the coarse skin's state, or none
+  std::vector<Transform> joints;   // the pose of the last interval's end
   float maxSpeed_m_per_s = 0;      // at the end of the last interval
   bool ready = false;              // surroundings belong to this state's time
 

@@ -9,6 +9,10 @@
 namespace fascia {
 namespace {
 
+// The farthest that a joint may turn within one interval: larger, and skin resting on a turning
+// limb stands off by r kTurn²/8; smaller costs contact tests.
+constexpr double kTurn_rad = 0.12;
+constexpr int kMostIntervals = 8;
 // Steps of a grid that rides on a coarse one: a few relaxations per interval. Longer leaves folds
 // behind in fast motion, shorter costs time in proportion.
 constexpr double kRidingStep_s = 1.0 / 960;
@@ -67,15 +71,30 @@ void SkinStepper::advance(SkinPoseSource& poses, double start_s, double end_s, S
                           SkinStats& stats) {
   if (!state.ready) begin(poses.at(start_s), state);
   const double span = end_s - start_s;
-  const int intervals =
-      std::max(1, static_cast<int>(std::ceil(span / skin_->settings().interval_s - 1e-6)));
+  const SkinPose end = poses.at(end_s);
+  const int intervals = intervalCount(end, span, state);
   for (int i = 0; i < intervals; ++i) {
     const double from = start_s + span * i / intervals, to = start_s + span * (i + 1) / intervals;
     if (ode_)
       odeInterval(poses, from, to, state, stats);
     else
-      interval(poses.at(to), to - from, state, stats);
+      interval(intervals == 1 ? end : poses.at(to), to - from, state, stats);
   }
+  state.joints.assign(end.joints.begin(), end.joints.end());
+}
+
+// Enough that no joint turns farther than kTurn_rad in one.
+int SkinStepper::intervalCount(const SkinPose& end, double span_s, const SkinState& state) const {
+  double leastCosine = 1;
+  for (std::size_t j = 0; j < end.joints.size() && j < state.joints.size(); ++j) {
+    // trace(Rᵀ R') = 1 + 2 cos(angle between)
+    const double trace = state.joints[j].rotation.cwiseProduct(end.joints[j].rotation).sum();
+    leastCosine = std::min(leastCosine, 0.5 * (trace - 1));
+  }
+  const double turn = std::acos(std::clamp(leastCosine, -1.0, 1.0));
+  const int forTurn = static_cast<int>(std::ceil(std::min(turn / kTurn_rad, 1.0 * kMostIntervals)));
+  const int forTime = static_cast<int>(std::ceil(span_s / skin_->settings().interval_s - 1e-6));
+  return std::max({1, forTurn, forTime});
 }
 
 // Anchors and half spaces for a state that comes from somewhere else.

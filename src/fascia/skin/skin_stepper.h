@@ -21,6 +21,7 @@ class SkinStepper {
                SkinStats& stats);
 
  private:
+  int intervalCount(const SkinPose& end, double span_s, const SkinState& state) const;
   void begin(const SkinPose& pose, SkinState& state);
   void interval(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void odeInterval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
