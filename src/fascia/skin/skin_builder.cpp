@@ -29,7 +29,7 @@ double inRange(double x, double low, double high, double feather, bool periodic)
     return std::max(0.0, std::min(low - t, t - high));
   };
   double distance = outsideBy(x);
-  if (periodic) distance = std::min({distance, outsideBy(x - 1), outsideBy(x + 1)});
+  if (periodic && low <= high) distance = std::min({distance, outsideBy(x - 1), outsideBy(x + 1)});
   if (distance <= 0) return 1;
   if (distance >= feather) return 0;
   const double t = 1 - distance / feather;
