@@ -93,10 +93,12 @@ inline bool sameBits(const GridLayout& g, const VectorArray& a, const VectorArra
   return same;
 }
 
+// Infinite if any coordinate is not a number.
 inline double largestDistance(const GridLayout& g, const VectorArray& a, const VectorArray& b) {
   double largest = 0;
   forEachPoint(g, [&](int, int, std::size_t k) {
-    largest = std::max(largest, (at(a, k) - at(b, k)).norm());
+    const double distance = (at(a, k) - at(b, k)).norm();
+    largest = std::max(largest, std::isnan(distance) ? HUGE_VAL : distance);
   });
   return largest;
 }

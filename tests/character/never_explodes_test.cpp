@@ -1,0 +1,175 @@
+// The promise of docs/never-explodes.md, case by case.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include <fascia/math/ode/integrators.h>
+
+#include "small_character.h"
+
+namespace fascia {
+namespace {
+
+using test::Worst;
+
+constexpr double kDeepest_m = 1e-4;    // ε: less than a pixel of a figure that fills a screen
+constexpr double kLargestStretch = 8;  // of any edge over its rest length, whatever happens
+constexpr double kFrames_s[] = {1e-3, 1.0 / 240, 1.0 / 60, 1.0 / 24, 1.0 / 12};
+
+CharacterDef material(double stiffness_N_per_m, double density_kg_per_m2) {
+  CharacterDef def = test::smallCharacter();
+  SkinMaterialDef& m = def.skin->material;
+  m.stretch_u_N_per_m = m.stretch_v_N_per_m = stiffness_N_per_m;
+  m.shear_N_per_m = 0.4 * stiffness_N_per_m;
+  m.density_kg_per_m2 = density_kg_per_m2;
+  return def;
+}
+
+void expectSound(const Worst& worst, const std::string& what) {
+  EXPECT_TRUE(worst.finite) << what;
+  EXPECT_LE(worst.penetration_m, kDeepest_m) << what;
+  EXPECT_LE(worst.stretch, kLargestStretch) << what;
+}
+
+std::string describe(double frame_s, double stiffness, double density) {
+  return std::to_string(1e3 * frame_s) + " ms, " + std::to_string(stiffness) + " N/m, " +
+         std::to_string(density) + " kg/m2";
+}
+
+// Every joint by 90° and the body by 2 m in one frame, back and forth every fifth frame.
+class Teleport : public testing::TestWithParam<const char*> {
+ protected:
+  void runAll(double step_s) {
+    for (const double frame : kFrames_s) {
+      Worst worst;
+      for (const double stiffness : {1.0, 150.0, 1e4, 1e6}) {
+        for (const double density : {0.1, 4.0, 100.0}) {
+          CharacterDef def = material(stiffness, density);
+          def.motions = {test::teleport(5 * frame, 4, kPi / 2, 2)};
+          def.simulation.integrator = GetParam();
+          def.simulation.step_s = step_s;
+          const Worst now = test::simulate(Character(def), 0, frame, 22);
+          expectSound(now, describe(frame, stiffness, density));
+          worst.add(now);
+        }
+      }
+      RecordProperty(std::to_string(1e3 * frame) + " ms: deepest_um",
+                     std::to_string(1e6 * worst.penetration_m));
+      RecordProperty(std::to_string(1e3 * frame) + " ms: stretch", std::to_string(worst.stretch));
+    }
+  }
+};
+
+TEST_P(Teleport, IsSurvivedAtEveryFrameRateStiffnessAndDensity) {
+  runAll(0);
+}
+
+TEST_P(Teleport, IsSurvivedWithStepsAsLongAsFrames) {
+  runAll(1.0 / 12);
+}
+
+INSTANTIATE_TEST_SUITE_P(NeverExplodes, Teleport, testing::Values("auto", "leapfrog"));
+
+TEST(NeverExplodes, WhenJointsJumpButTheBodyStays) {
+  for (const double frame : kFrames_s) {
+    for (const double angle : {0.2, 0.8, 1.57}) {
+      CharacterDef def = test::smallCharacter();
+      def.motions = {test::teleport(5 * frame, 4, angle, 0)};
+      expectSound(test::simulate(Character(def), 0, frame, 22), describe(frame, angle, 0));
+    }
+  }
+}
+
+TEST(NeverExplodes, WhenAFineSkinRidesOnACoarseOne) {
+  for (const double frame : {1.0 / 240, 1.0 / 12}) {
+    for (const double stiffness : {150.0, 1e6}) {
+      CharacterDef def = material(stiffness, 4);
+      def.skin->columns = 56, def.skin->rows = 64;
+      def.motions = {test::teleport(3 * frame, 2, kPi / 2, 2)};
+      const Character character(def);
+      ASSERT_NE(character.skin()->coarse(), nullptr);
+      expectSound(test::simulate(character, 0, frame, 9), describe(frame, stiffness, 4));
+    }
+  }
+}
+
+TEST(NeverExplodes, WithAnyIntegratorOfTheLibrary) {
+  for (const IntegratorInfo& integrator : integrators()) {
+    for (const double frame : {1.0 / 60, 1.0 / 12}) {
+      CharacterDef def = material(150, 4);
+      def.skin->columns = def.skin->rows = 8;
+      def.motions = {test::teleport(2 * frame, 2, kPi / 2, 2)};
+      def.simulation.integrator = integrator.name;
+      def.simulation.min_step_s = 1e-4;
+      expectSound(test::simulate(Character(def), 0, frame, 6),
+                  std::string(integrator.name) + " " + describe(frame, 150, 4));
+    }
+  }
+}
+
+TEST(NeverExplodes, WhenSpunFast) {
+  CharacterDef def = test::smallCharacter();
+  // Ten turns a second, with the spine bent.
+  def.motions = {{"spin", 10, false, {}}};
+  def.motions[0].tracks = {test::track("hip", "ry", {{0, 0}, {10, 200 * kPi}}),
+                           test::track("spine", "rz", {{0, 0}, {0.3, 1.2}})};
+  for (const double frame : kFrames_s)
+    expectSound(test::simulate(Character(def), 0, frame, frame < 0.01 ? 120 : 30),
+                describe(frame, 0, 0));
+}
+
+TEST(NeverExplodes, InAnyGravity) {
+  for (const double gravity : {0.0, -9.81, 500.0, -1e4}) {
+    for (const double frame : {1.0 / 240, 1.0 / 12}) {
+      CharacterDef def = test::smallCharacter();
+      def.simulation.gravity_m_per_s2 = Vec3(0.2 * gravity, gravity, 0);
+      expectSound(test::simulate(Character(def), 0, frame, 30), describe(frame, 0, gravity));
+    }
+  }
+}
+
+TEST(NeverExplodes, WithExtremeMaterials) {
+  for (const double frame : {1.0 / 240, 1.0 / 12}) {
+    for (int n = 0; n < 5; ++n) {
+      CharacterDef def = test::smallCharacter();
+      SkinMaterialDef& m = def.skin->material;
+      if (n == 0) m.bending_Nm = 1e3;
+      if (n == 1) m.prestretch = 3, m.max_stretch = 4;
+      if (n == 2) m.prestretch = 0.5, m.drag_Ns_per_m3 = 1e5;
+      if (n == 3) m.drag_Ns_per_m3 = 0, m.friction_per_s = 0, m.restitution = 1;
+      if (n == 4) def.skin->tissue = {1e8, 1e6, 0.0};
+      expectSound(test::simulate(Character(def), 0, frame, 30),
+                  "material " + std::to_string(n) + ", " + describe(frame, 0, 0));
+    }
+  }
+}
+
+TEST(NeverExplodes, WhenTheStateIsBroken) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e30f;
+  for (const std::string integrator : {"auto", "leapfrog", "verlet"}) {
+    CharacterDef def = test::smallCharacter();
+    def.simulation.integrator = integrator;
+    const Character character(def);
+    const GridLayout& g = character.skin()->layout();
+    const Worst worst =
+        test::simulate(character, 0, 1.0 / 60, 12, [&](CharacterState& state, int frame) {
+          if (frame == 2) state.skin.position.x[g.at(4, 8)] = nan;
+          if (frame == 4) state.skin.velocity.y[g.at(5, 9)] = huge;
+          if (frame == 6) state.skin.position.z[g.at(6, 3)] = -huge;
+          if (frame == 8) state.skin.velocity.fill(nan);
+        });
+    expectSound(worst, integrator);
+    EXPECT_GT(worst.stats.repaired_points, 0u) << integrator;
+  }
+}
+
+TEST(NeverExplodes, AndRepairsNothingInAnOrdinaryMotion) {
+  const Character character(test::smallCharacter());
+  const Worst worst = test::simulate(character, 0, 1.0 / 60, 120);
+  expectSound(worst, "sway");
+  EXPECT_EQ(worst.stats.repaired_points, 0u);
+  EXPECT_LT(worst.stretch, 2);
+}
+
+}  // namespace
+}  // namespace fascia

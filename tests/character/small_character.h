@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+
+#include <fascia/character/character.h>
+
+namespace fascia::test {
+
+inline FleshSolidDef ball(const std::string& name, const std::string& joint, double height_m,
+                          double radius_m) {
+  FleshSolidDef def;
+  def.name = name;
+  def.joint = joint;
+  def.position_m = Vec3(0, height_m, 0);
+  def.solid.parameters = {radius_m};
+  return def;
+}
+
+inline TrackDef track(const std::string& joint, const std::string& dof, std::vector<Key> keys) {
+  return {TrackDef::Target::joint, joint, dof, std::move(keys)};
+}
+
+// Hip, spine and neck; belly, chest and a head that swells when the neck bends.
+inline CharacterDef smallCharacter() {
+  CharacterDef def;
+  def.name = "doll";
+  const double quarter = kPi / 2;
+  def.skeleton.joints = {
+      {"hip", "", Vec3(0, 1, 0), Vec3::Zero(), {{Dof::tx}, {Dof::ty}, {Dof::tz}, {Dof::ry}}},
+      {"spine",
+       "hip",
+       Vec3(0, 0.25, 0),
+       Vec3::Zero(),
+       {{Dof::rx, -quarter, quarter, 0}, {Dof::rz, -quarter, quarter, 0}}},
+      {"neck", "spine", Vec3(0, 0.25, 0), Vec3::Zero(), {{Dof::rx, -quarter, quarter, 0}}}};
+  def.flesh.solids = {ball("belly", "hip", 0, 0.25), ball("chest", "spine", 0.05, 0.2),
+                      ball("head", "neck", 0.15, 0.15)};
+  def.flesh.solids[2].drivers = {{"radius_m", "neck", Dof::rx, {{0, 0.15}, {quarter, 0.18}}}};
+  def.skin.emplace();
+  def.skin->columns = 12;
+  def.skin->rows = 16;
+  def.skin->bottom.joint = "hip";
+  def.skin->top.joint = "neck";
+  def.simulation.settle_s = 0.1;
+
+  MotionDef sway{"sway", 2, true, {}};
+  sway.tracks = {track("hip", "tx", {{0, 0}, {0.5, 0.3}, {1.5, -0.3}, {2, 0}}),
+                 track("hip", "ry", {{0, 0}, {1, 1.5}, {2, 0}}),
+                 track("spine", "rz", {{0, 0}, {0.4, 0.8}, {1.2, -0.8}, {2, 0}}),
+                 track("neck", "rx", {{0, 0}, {0.7, 1.2}, {2, 0}})};
+  def.motions = {sway};
+  return def;
+}
+
+// From one posture to another and back, each time within a microsecond, every `every_s`.
+inline MotionDef teleport(double every_s, int times, double angle_rad, double way_m) {
+  const auto keys = [&](double value) {
+    std::vector<Key> out;
+    const auto add = [&](double t, double v) { out.push_back({t, v, 1, 0, 0}); };
+    add(0, 0);
+    for (int n = 1; n <= times; ++n) {
+      add((n - 0.5) * every_s - 1e-6, n % 2 ? 0 : value);
+      add((n - 0.5) * every_s, n % 2 ? value : 0);
+    }
+    return out;
+  };
+  MotionDef motion{"teleport", (times + 1) * every_s, false, {}};
+  motion.tracks = {track("hip", "tx", keys(way_m)), track("hip", "ry", keys(angle_rad)),
+                   track("spine", "rx", keys(angle_rad)), track("spine", "rz", keys(-angle_rad)),
+                   track("neck", "rx", keys(angle_rad))};
+  return motion;
+}
+
+inline bool allFinite(const Character& character, const CharacterState& state) {
+  const GridLayout& g = character.skin()->layout();
+  bool finite = true;
+  for (const VectorArray* a : {&state.skin.position, &state.skin.velocity})
+    for (const FloatArray* axis : {&a->x, &a->y, &a->z})
+      for (int j = 0; j < g.rows; ++j)
+        for (int i = 0; i < g.columns; ++i) finite = finite && std::isfinite((*axis)[g.at(i, j)]);
+  return finite;
+}
+
+// What the frames of a run showed at their worst.
+struct Worst {
+  bool finite = true;
+  double penetration_m = 0, stretch = 0;
+  SkinStats stats;
+
+  void add(const Worst& other) {
+    finite = finite && other.finite;
+    penetration_m = std::max(penetration_m, other.penetration_m);
+    stretch = std::max(stretch, other.stretch);
+  }
+};
+
+inline Worst simulate(const Character& character, int motion, double frame_s, int frames,
+                      const std::function<void(CharacterState&, int)>& before = {}) {
+  Worst worst;
+  CharacterState state = initialState(character, motion);
+  for (int f = 0; f < frames; ++f) {
+    if (before) before(state, f);
+    advance(character, motion, frame_s, state, worst.stats);
+    worst.finite = worst.finite && allFinite(character, state);
+    measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
+                worst.stats);
+  }
+  worst.penetration_m = worst.stats.max_penetration_m;
+  worst.stretch = worst.stats.max_edge_stretch;
+  return worst;
+}
+
+}  // namespace fascia::test
