@@ -83,7 +83,7 @@ def ellipse(a, v, a0, v0, radius_a, radius_v):
 def white_front(a, v):
     """Positive on the white parts: belly and a heart-shaped face."""
     belly = curve(FRONT, v) - a if v < 0.74 else -1
-    face = max(ellipse(a, v, 0.083, 0.812, 0.074, 0.078), ellipse(a, v, 0.0, 0.755, 0.150, 0.055))
+    face = max(ellipse(a, v, 0.080, 0.815, 0.079, 0.078), ellipse(a, v, 0.0, 0.755, 0.150, 0.055))
     # A smooth union: the two melt together where they are about as near.
     k = 0.02
     h = max(k - abs(belly - face), 0) / k
@@ -96,7 +96,7 @@ CLUMPS = Noise(34, 22, 3)
 
 def feathers(u, v):
     """Rows of overlapping feathers: dark at each root, light at each tip. About -1 to 1."""
-    rows, columns = 46, 64
+    rows, columns = 40, 56
     y = v * rows + 0.25 * CLUMPS.at(u, v)
     row = math.floor(y)
     x = u * columns + 0.5 * (row % 2)
@@ -110,7 +110,7 @@ def paint(u, v):
     clump, fluff = CLUMPS.at(u, v), FLUFF.at(u, v)
     barb = feathers(u, v)
 
-    sheen = 0.30 + 0.22 * clump + 0.10 * barb + 0.35 * dab(a, v, 0.33, 0.60, 0.14, 0.16)
+    sheen = 0.28 + 0.16 * clump + 0.06 * barb + 0.35 * dab(a, v, 0.33, 0.60, 0.14, 0.16)
     coat = mix(COAT, COAT_SHEEN, min(1.0, max(0.0, sheen)))
 
     white = mix(WHITE, CREAM, min(1.0, max(0.0, smooth(0.30, 0.02, v) * 0.8 + 0.10 + 0.10 * clump)))
@@ -123,7 +123,7 @@ def paint(u, v):
     white = mix(white, ROSE, 0.75 * dab(a, v, 0.120, 0.757, 0.026, 0.024))
 
     # The border is ragged like down, more so on the belly than in the face.
-    ragged = 0.010 if v < 0.66 else 0.004
+    ragged = 0.007 if v < 0.66 else 0.004
     inside = white_front(a, v) + ragged * (0.6 * fluff + 0.4 * clump)
     return mix(coat, white, smooth(-0.004, 0.004, inside))
 
@@ -153,7 +153,7 @@ def main():
         v = 1 - (y + 0.5) / HEIGHT
         row = bytearray()
         for x in range(WIDTH):
-            row += bytes(min(255, max(0, round(c))) for c in paint((x + 0.5) / WIDTH, v))
+            row += bytes(min(254, max(0, 2 * round(c / 2))) for c in paint((x + 0.5) / WIDTH, v))
         rows.append(bytes(row))
     with open(out, "wb") as file:
         file.write(png(WIDTH, HEIGHT, rows))
