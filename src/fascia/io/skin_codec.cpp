@@ -174,8 +174,6 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
     field("tissue", &S::tissue, tissueCodec(), "");
     field("cling", &S::cling, numbers({0, 1}),
           "How far the skin follows hollows: 0 spans them like a stocking, 1 fills every valley");
-    field("cling", &S::cling, numbers({0, 1}),
-          "Shrink-wrap: 0 spans hollows like a stocking, 1 fills every valley");
     field("texture", &S::texture, texts(1000),
           "A PNG or JPEG in the folder of this file, or below it");
     field("color", &S::color, colorArrays(), "Where there is no texture");
