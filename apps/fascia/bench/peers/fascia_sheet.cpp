@@ -1,26 +1,23 @@
 #include "bench/peers/fascia_sheet.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <vector>
 
 #include <fascia/base/error.h>
 #include <fascia/field/field.h>
 #include <fascia/field/solid.h>
 #include <fascia/skin/flesh_contact.h>
 #include <fascia/skin/leapfrog.h>
-#include <fascia/skin/point_kernels.h>
-#include <fascia/skin/prolongation.h>
 
 namespace fascia {
 namespace {
 
-// As skins do it: contact is renewed this often within a frame, sheets of more than twice
-// kCoarseSide² points ride on one of that size with steps of kRidingStep_s, and steps are as long
-// as adding this share to the mass allows.
+// Contact is renewed this often within a frame, and steps are as long as adding this share to the
+// mass allows, as in skins. Large sheets do not ride on coarse ones, as skins do: what keeps a fine
+// grid on its carrier is the tissue, and the sheet has none.
 constexpr int kIntervalsPerFrame = 2;
-constexpr int kCoarseSide = 35;
-constexpr double kRidingStep_s = 1.0 / 960;
 constexpr double kAddedMassShare = 0.02;
 constexpr double kShearShare = 0.4;  // shear over stretching stiffness, as in the default skin
 constexpr double kDrag_per_s = 0.5;
@@ -113,32 +110,29 @@ std::vector<PointBlock> makeBlocks(const GridLayout& g) {
   return blocks;
 }
 
-// One grid of the sheet and its state.
-class Grid {
+class FasciaSheet final : public SheetSolver {
  public:
-  Grid(const SheetScene& scene, double stiffness_N_per_m, double step_s)
+  FasciaSheet(const SheetScene& scene, double stiffness_N_per_m)
       : layout_{scene.side, scene.side, false},
         elastic_(makeElastic(scene, layout_, stiffness_N_per_m)),
         points_(makePoints(scene, layout_, elastic_)),
         contact_(makeBlocks(layout_)),
-        stepper_(layout_) {
-    for (VectorArray* a : {&position, &velocity}) a->resize(layout_.storage());
+        stepper_(layout_),
+        position_(layout_.storage()),
+        velocity_(layout_.storage()) {
     around_.resize(layout_.storage());
     for (int j = 0; j < layout_.rows; ++j)
       for (int i = 0; i < layout_.columns; ++i)
-        setPoint(position, layout_.at(i, j), scene.start(i, j));
-    fillPads(layout_, position);
-    const double longest = step_s > 0 ? step_s : longestStep(points_, kAddedMassShare);
-    steps_ = static_cast<int>(std::ceil(interval_s() / longest - 1e-6));
-    prepareStep(points_, response_, interval_s() / steps_, coefficients_);
+        setPoint(position_, layout_.at(i, j), scene.start(i, j));
+    fillPads(layout_, position_);
+    steps_ = static_cast<int>(std::ceil(kInterval_s / longestStep(points_, kAddedMassShare)));
+    prepareStep(points_, response_, kInterval_s / steps_, coefficients_);
+    meetSpheres();
   }
 
-  static double interval_s() { return SheetScene::kFrame_s / kIntervalsPerFrame; }
-  int stepsPerInterval() const { return steps_; }
-  const GridLayout& layout() const { return layout_; }
-  const FloatArray& carried() const { return coefficients_.carried; }
+  int stepsPerFrame() const { return kIntervalsPerFrame * steps_; }
 
-  void step() {
+  void advanceFrame() override {
     const SweepModel model{&layout_,
                            &elastic_.coefficients(),
                            &points_,
@@ -146,23 +140,32 @@ class Grid {
                            &around_,
                            nullptr,
                            {0, -static_cast<float>(SheetScene::kGravity_m_per_s2), 0}};
-    stepper_.run(model, 0, steps_, position, velocity);
+    for (int n = 0; n < kIntervalsPerFrame; ++n) {
+      stepper_.run(model, 0, steps_, position_, velocity_);
+      time_s_ += kInterval_s;
+      meetSpheres();
+    }
   }
 
-  // Out of the spheres, and their half spaces for the next interval.
-  void meet(const Field& field) {
-    constexpr double kDiagonal_m = SheetScene::kSide_m * 1.41421356;
-    const double reach = 2 * maxSpeed_m_per_s_ * interval_s() + 0.01 * kDiagonal_m;
-    maxSpeed_m_per_s_ =
-        contact_
-            .project(field, points_, static_cast<float>(reach), 0.f, position, velocity, around_)
-            .maxSpeed_m_per_s;
-    fillPads(layout_, position);
+  Vec3 position(int i, int j) const override {
+    const std::size_t k = layout_.at(i, j);
+    return {position_.x[k], position_.y[k], position_.z[k]};
   }
-
-  VectorArray position, velocity;
 
  private:
+  static constexpr double kInterval_s = SheetScene::kFrame_s / kIntervalsPerFrame;
+
+  // Out of the spheres, and their half spaces for the next interval.
+  void meetSpheres() {
+    spheres_.moveTo(time_s_);
+    const double reach = 2 * maxSpeed_m_per_s_ * kInterval_s + 0.02 * SheetScene::kSide_m;
+    maxSpeed_m_per_s_ = contact_
+                            .project(spheres_, points_, static_cast<float>(reach), 0.f, position_,
+                                     velocity_, around_)
+                            .maxSpeed_m_per_s;
+    fillPads(layout_, position_);
+  }
+
   GridLayout layout_;
   ElasticGrid elastic_;
   PointModel points_;
@@ -171,76 +174,18 @@ class Grid {
   PointSurroundings around_;
   FleshContact contact_;
   GridStepper stepper_;
-  double maxSpeed_m_per_s_ = 0;
-  int steps_ = 1;
-};
-
-class FasciaSheet final : public SheetSolver {
- public:
-  FasciaSheet(const SheetScene& scene, double stiffness_N_per_m, bool rides)
-      : fine_(scene, stiffness_N_per_m, rides ? kRidingStep_s : 0) {
-    if (rides) {
-      coarse_.emplace(SheetScene{kCoarseSide}, stiffness_N_per_m, 0);
-      prolongation_ = Prolongation(coarse_->layout(), fine_.layout());
-      coarseWay_.resize(coarse_->layout().storage());
-      carrierVelocity_.resize(fine_.layout().storage());
-    }
-    spheres_.moveTo(0);
-    fine_.meet(spheres_);
-    if (coarse_) coarse_->meet(spheres_);
-  }
-
-  FasciaSteps steps() const {
-    FasciaSteps steps{.perFrame = kIntervalsPerFrame * fine_.stepsPerInterval()};
-    if (coarse_) steps.coarseSide = kCoarseSide;
-    if (coarse_) steps.coarsePerFrame = kIntervalsPerFrame * coarse_->stepsPerInterval();
-    return steps;
-  }
-
-  void advanceFrame() override {
-    for (int n = 0; n < kIntervalsPerFrame; ++n) {
-      time_s_ += Grid::interval_s();
-      spheres_.moveTo(time_s_);
-      if (coarse_) ride();
-      fine_.step();
-      fine_.meet(spheres_);
-    }
-  }
-
-  Vec3 position(int i, int j) const override {
-    const std::size_t k = fine_.layout().at(i, j);
-    return {fine_.position.x[k], fine_.position.y[k], fine_.position.z[k]};
-  }
-
- private:
-  // The coarse grid goes first; the fine one takes over the change of its velocity.
-  void ride() {
-    coarseStart_ = coarse_->position;
-    coarse_->step();
-    coarse_->meet(spheres_);
-    const auto rate = static_cast<float>(1 / Grid::interval_s());
-    for (const auto axis : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
-      for (std::size_t k = 0; k < coarseStart_.size(); ++k)
-        (coarseWay_.*axis)[k] = ((coarse_->position.*axis)[k] - (coarseStart_.*axis)[k]) * rate;
-    prolongation_.apply(coarseWay_, nextCarrierVelocity_);
-    followCarrier(nextCarrierVelocity_, fine_.carried(), carrierVelocity_, fine_.velocity);
-  }
-
-  Grid fine_;
-  std::optional<Grid> coarse_;
-  Prolongation prolongation_;
-  VectorArray coarseStart_, coarseWay_, nextCarrierVelocity_, carrierVelocity_;
+  VectorArray position_, velocity_;
   Spheres spheres_;
-  double time_s_ = 0;
+  double time_s_ = 0, maxSpeed_m_per_s_ = 0;
+  int steps_ = 1;
 };
 
 }  // namespace
 
 std::unique_ptr<SheetSolver> makeFasciaSheet(const SheetScene& scene,
-                                             const FasciaSettings& settings, FasciaSteps& steps) {
-  auto sheet = std::make_unique<FasciaSheet>(
-      scene, settings.stiffness_N_per_m, scene.side * scene.side >= 2 * kCoarseSide * kCoarseSide);
-  steps = sheet->steps();
+                                             const FasciaSettings& settings, int& stepsPerFrame) {
+  auto sheet = std::make_unique<FasciaSheet>(scene, settings.stiffness_N_per_m);
+  stepsPerFrame = sheet->stepsPerFrame();
   return sheet;
 }
 

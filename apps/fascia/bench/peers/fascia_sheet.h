@@ -7,17 +7,12 @@
 namespace fascia {
 
 // The sheet as a skin: the kernels, the contact and the default scheme of the skin module on an
-// open grid. Large sheets ride on a coarse one, as large skins do.
+// open grid.
 struct FasciaSettings {
   double stiffness_N_per_m = 100;
 };
-// How the sheet will be stepped, for the record.
-struct FasciaSteps {
-  int perFrame = 0;
-  int coarseSide = 0;  // 0: it does not ride
-  int coarsePerFrame = 0;
-};
+// Writes how many steps a frame takes.
 std::unique_ptr<SheetSolver> makeFasciaSheet(const SheetScene& scene,
-                                             const FasciaSettings& settings, FasciaSteps& steps);
+                                             const FasciaSettings& settings, int& stepsPerFrame);
 
 }  // namespace fascia

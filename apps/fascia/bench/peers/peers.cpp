@@ -45,14 +45,14 @@ constexpr double kFirmStretch = 0.10;
 
 struct FasciaRun {
   FasciaSettings settings;
-  FasciaSteps steps;
+  int stepsPerFrame = 0;
   SheetResult result;
 };
 
 FasciaRun runFascia(const SheetScene& scene, const FasciaSettings& settings, int frames) {
   if (interruptSignal() != 0) throw Interrupted{};
-  FasciaRun run{settings, {}, {}};
-  const std::unique_ptr<SheetSolver> sheet = makeFasciaSheet(scene, settings, run.steps);
+  FasciaRun run{settings, 0, {}};
+  const std::unique_ptr<SheetSolver> sheet = makeFasciaSheet(scene, settings, run.stepsPerFrame);
   run.result = measureSheet(scene, *sheet, frames);
   return run;
 }
@@ -99,10 +99,8 @@ class Report {
   }
 
   void add(const SheetScene& scene, const FasciaRun& run, int threads, double timesBullet) {
-    const FasciaSteps& s = run.steps;
     std::string setting =
-        fmt::format("{:.3g} N/m, {} steps", run.settings.stiffness_N_per_m, s.perFrame);
-    if (s.coarseSide > 0) setting += fmt::format(" on {}² x {}", s.coarseSide, s.coarsePerFrame);
+        fmt::format("{:.3g} N/m, {} steps", run.settings.stiffness_N_per_m, run.stepsPerFrame);
     if (threads > 1) setting += fmt::format(", {} threads", threads);
     add(scene, "Fascia", setting, threads, run.result, timesBullet);
   }
