@@ -16,9 +16,9 @@ struct AlignedAllocator {
   template <class U>
   AlignedAllocator(const AlignedAllocator<U>&) {}
   T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t{kSimdAlignment}));
+    return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{kSimdAlignment}));
   }
-  void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t{kSimdAlignment}); }
+  void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{kSimdAlignment}); }
   template <class U>
   bool operator==(const AlignedAllocator<U>&) const {
     return true;

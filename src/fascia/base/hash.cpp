@@ -6,7 +6,8 @@ namespace fascia {
 
 void StateHash::add(const void* data, std::size_t bytes) {
   const auto* p = static_cast<const unsigned char*>(data);
-  // Eight bytes a round: states are arrays of floats, and bytewise FNV would cost more than a frame.
+  // Eight bytes a round: states are arrays of floats, and bytewise FNV would cost more than a
+  // frame.
   for (; bytes >= 8; bytes -= 8, p += 8) {
     std::uint64_t word;
     std::memcpy(&word, p, 8);

@@ -7,14 +7,18 @@
 
 namespace fascia {
 
-int hardwareThreads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+int hardwareThreads() {
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
 
 ThreadLimit::ThreadLimit(int threads)
     : control_(new tbb::global_control(
           tbb::global_control::max_allowed_parallelism,
           static_cast<std::size_t>(threads > 0 ? threads : hardwareThreads()))) {}
 
-ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+ThreadLimit::~ThreadLimit() {
+  delete static_cast<tbb::global_control*>(control_);
+}
 
 int threadLimit() {
   return static_cast<int>(
@@ -26,8 +30,8 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& task
     for (std::size_t i = 0; i < count; ++i) task(i);
     return;
   }
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { task(i); },
-                    tbb::simple_partitioner{});
+  tbb::parallel_for(
+      std::size_t{0}, count, [&](std::size_t i) { task(i); }, tbb::simple_partitioner{});
 }
 
 }  // namespace fascia

@@ -42,7 +42,9 @@ class NearestName {
   }
 
   const std::string& best() const { return best_; }  // empty: nothing is near
-  std::string hint() const { return best_.empty() ? "" : "did you mean " + fascia::quoted(best_) + "?"; }
+  std::string hint() const {
+    return best_.empty() ? "" : "did you mean " + fascia::quoted(best_) + "?";
+  }
 
  private:
   static constexpr std::size_t kLongest = 48;

@@ -11,8 +11,12 @@ using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
 
 inline constexpr double kPi = 3.14159265358979323846;
-inline constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
-inline constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
+inline constexpr double radians(double degrees) {
+  return degrees * (kPi / 180.0);
+}
+inline constexpr double degrees(double radians) {
+  return radians * (180.0 / kPi);
+}
 
 // A rigid motion: p ↦ rotation p + translation_m.
 struct Transform {

@@ -30,22 +30,22 @@ StepperOptions optionsOf(const Skin& skin) {
 
 }  // namespace
 
-// One tissue strand at one moment: taut, or without effect.
-struct OdeSkin::Strand {
-  bool taut = false;
-  Vec3 direction;      // from the anchor to the skin, unit
-  double length = 0;   // m
-  double closing = 0;  // l̇·l/|l|, m/s
-};
-
 OdeSkin::OdeSkin(const Skin& skin)
     : skin_(skin),
       stepper_(makeIntegrator(skin.settings().integrator), optionsOf(skin)),
       inverseMass_(3 * skin.pointCount()),
-      storage_(skin.pointCount()) {
+      points_(skin.pointCount()),
+      anchors_(skin.pointCount()) {
+  const PointModel& model = skin.points();
   for (std::size_t p = 0; p < skin.pointCount(); ++p) {
-    const std::size_t k = storage_[p] = skin.storageIndex(p);
-    const double inverse = skin.points().free[k] > 0 ? 1.0 / skin.points().mass[k] : 0;
+    const std::size_t k = skin.storageIndex(p);
+    points_[p] = {k,
+                  model.mass[k],
+                  model.drag[k],
+                  model.tissueStiffness[k],
+                  model.tissueDamping[k],
+                  model.tissueRestLength[k]};
+    const double inverse = model.free[k] > 0 ? 1.0 / model.mass[k] : 0;
     for (std::size_t c = 0; c < 3; ++c) inverseMass_[3 * p + c] = inverse;
   }
   ode_.resize(inverseMass_.size());
@@ -55,7 +55,7 @@ OdeSkin::OdeSkin(const Skin& skin)
 
 void OdeSkin::load(std::span<const double> r, VectorArray& out) const {
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = storage_[p];
+    const std::size_t k = points_[p].storage;
     out.x[k] = static_cast<float>(r[3 * p]);
     out.y[k] = static_cast<float>(r[3 * p + 1]);
     out.z[k] = static_cast<float>(r[3 * p + 2]);
@@ -69,7 +69,7 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, Flesh
   poses_ = &poses, contact_ = &contact, state_ = &state;
   ode_.t_s = start_s;
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = storage_[p];
+    const std::size_t k = points_[p].storage;
     const VectorArray* arrays[2] = {&state.position, &state.velocity};
     std::vector<double>* flat[2] = {&ode_.r, &ode_.v};
     for (int a = 0; a < 2; ++a) {
@@ -77,6 +77,13 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, Flesh
       (*flat[a])[3 * p + 1] = arrays[a]->y[k];
       (*flat[a])[3 * p + 2] = arrays[a]->z[k];
     }
+  }
+  const PointSurroundings& around = state.surroundings;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const std::size_t k = points_[p].storage;
+    anchors_[p] = {
+        {around.anchor.x[k], around.anchor.y[k], around.anchor.z[k]},
+        {around.anchorVelocity.x[k], around.anchorVelocity.y[k], around.anchorVelocity.z[k]}};
   }
   stepper_.resetStats();
   stepper_.advance(*this, ode_, end_s);
@@ -94,74 +101,52 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, Flesh
   stats.repaired_points += s.repaired_coordinates / 3;
 }
 
-OdeSkin::Strand OdeSkin::strand(std::size_t p, double t_s, std::span<const double> r,
-                                std::span<const double> v) const {
-  const std::size_t k = storage_[p];
-  Strand s;
-  if (skin_.points().tissueStiffness[k] <= 0) return s;
-  const PointSurroundings& around = state_->surroundings;
-  const Vec3 speed(around.anchorVelocity.x[k], around.anchorVelocity.y[k],
-                   around.anchorVelocity.z[k]);
-  const Vec3 anchor =
-      Vec3(around.anchor.x[k], around.anchor.y[k], around.anchor.z[k]) + (t_s - start_s_) * speed;
-  const Vec3 l = Vec3(r[3 * p], r[3 * p + 1], r[3 * p + 2]) - anchor;
-  s.length = l.norm();
-  s.taut = s.length > skin_.points().tissueRestLength[k] && s.length > 1e-9;
-  if (!s.taut) return s;
-  s.direction = l / s.length;
-  if (!v.empty()) s.closing = (Vec3(v[3 * p], v[3 * p + 1], v[3 * p + 2]) - speed).dot(s.direction);
-  return s;
-}
-
 void OdeSkin::addPositionForces(double t_s, std::span<const double> r, std::span<double> f) {
-  const PointModel& points = skin_.points();
   load(r, position_);
   gridForces(skin_.layout(), skin_.elastic().coefficients(), position_, force_, scratch_);
   if (skin_.bending().active()) skin_.bending().addForces(position_, force_);
   const Vec3& gravity = skin_.settings().gravity_m_per_s2;
-  for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = storage_[p];
-    const Strand s = strand(p, t_s, r, {});
-    const double pull =
-        s.taut ? points.tissueStiffness[k] * (s.length - points.tissueRestLength[k]) : 0;
-    const float elastic[3] = {force_.x[k], force_.y[k], force_.z[k]};
-    for (int c = 0; c < 3; ++c)
-      f[3 * p + static_cast<std::size_t>(c)] +=
-          elastic[c] + points.mass[k] * gravity[c] - (s.taut ? pull * s.direction[c] : 0);
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const Point& point = points_[p];
+    Vec3 force = Vec3(force_.x[point.storage], force_.y[point.storage], force_.z[point.storage]) +
+                 point.mass * gravity;
+    const Strand s = strand(p, t_s, r);
+    if (s.squared > 0)
+      force -= point.stiffness * (1 - point.restLength / std::sqrt(s.squared)) * s.way;
+    for (std::size_t c = 0; c < 3; ++c) f[3 * p + c] += force[static_cast<Eigen::Index>(c)];
   }
 }
 
 void OdeSkin::addVelocityForces(double t_s, std::span<const double> r, std::span<const double> v,
                                 std::span<double> f) {
-  const PointModel& points = skin_.points();
-  for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = storage_[p];
-    const Strand s = strand(p, t_s, r, v);
-    for (int c = 0; c < 3; ++c) {
-      const std::size_t i = 3 * p + static_cast<std::size_t>(c);
-      f[i] -= points.drag[k] * v[i];
-      if (s.taut) f[i] -= points.tissueDamping[k] * s.closing * s.direction[c];
-    }
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const Point& point = points_[p];
+    const Vec3 speed(v[3 * p], v[3 * p + 1], v[3 * p + 2]);
+    Vec3 force = -point.drag * speed;
+    const Strand s = strand(p, t_s, r);
+    if (s.squared > 0)
+      force -= point.damping * (speed - anchors_[p].velocity).dot(s.way) / s.squared * s.way;
+    for (std::size_t c = 0; c < 3; ++c) f[3 * p + c] += force[static_cast<Eigen::Index>(c)];
   }
 }
 
-void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<const double> v,
+void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<const double>,
                             SparseMatrix& dfdr, SparseMatrix& dfdv) {
-  const PointModel& points = skin_.points();
   load(r, position_);
   entries_.clear();
   dampingEntries_.clear();
   skin_.elastic().addForceJacobian(position_, false, entries_);
   if (skin_.bending().active()) skin_.bending().addForceJacobian(position_, entries_);
-  for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = storage_[p];
-    const Strand s = strand(p, t_s, r, v);
-    Mat3 stiffness = Mat3::Zero(), damping = points.drag[k] * Mat3::Identity();
-    if (s.taut) {
-      const Mat3 along = s.direction * s.direction.transpose();
-      const double slack = points.tissueRestLength[k] / s.length;
-      stiffness = points.tissueStiffness[k] * (along + (1 - slack) * (Mat3::Identity() - along));
-      damping += points.tissueDamping[k] * along;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const Point& point = points_[p];
+    const Strand s = strand(p, t_s, r);
+    // Slack strands keep their zeros, so that the pattern stays and is analysed once.
+    Mat3 stiffness = Mat3::Zero(), damping = point.drag * Mat3::Identity();
+    if (s.squared > 0) {
+      const Mat3 along = s.way * s.way.transpose() / s.squared;
+      const double stretched = 1 - point.restLength / std::sqrt(s.squared);
+      stiffness = point.stiffness * (along + stretched * (Mat3::Identity() - along));
+      damping += point.damping * along;
     }
     const int row = static_cast<int>(3 * p);
     for (int a = 0; a < 3; ++a) {
@@ -194,7 +179,7 @@ double OdeSkin::project(double t_s, std::span<double> r, std::span<double> v) {
                         velocity_, state_->surroundings);
   // Only what was changed goes back: the rest keeps its double precision.
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = storage_[p];
+    const std::size_t k = points_[p].storage;
     const VectorArray* now[2] = {&position_, &velocity_};
     const VectorArray* old[2] = {&positionBefore_, &velocityBefore_};
     const std::span<double> flat[2] = {r, v};

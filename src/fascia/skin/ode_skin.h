@@ -29,15 +29,36 @@ class OdeSkin final : public SecondOrderSystem {
   double project(double t_s, std::span<double> r, std::span<double> v) override;
 
  private:
-  struct Strand;
-  Strand strand(std::size_t point, double t_s, std::span<const double> r,
-                std::span<const double> v) const;
+  // A point's own constants, flat for the inner loops.
+  struct Point {
+    std::size_t storage;
+    double mass, drag, stiffness, damping, restLength;
+  };
+  struct Anchor {
+    Vec3 position, velocity;  // at the interval's start
+  };
+  // From the anchor to the point; its squared length is 0 if the strand is slack or there is none.
+  struct Strand {
+    Vec3 way;
+    double squared;
+  };
+  Strand strand(std::size_t p, double t_s, std::span<const double> r) const {
+    const Point& point = points_[p];
+    const Anchor& a = anchors_[p];
+    const Vec3 way =
+        Vec3(r[3 * p], r[3 * p + 1], r[3 * p + 2]) - (a.position + (t_s - start_s_) * a.velocity);
+    const double squared = way.squaredNorm();
+    const bool taut =
+        point.stiffness > 0 && squared > 1e-18 && squared > point.restLength * point.restLength;
+    return {way, taut ? squared : 0};
+  }
   void load(std::span<const double> r, VectorArray& out) const;
 
   const Skin& skin_;
   AdaptiveStepper stepper_;
   std::vector<double> inverseMass_;
-  std::vector<std::size_t> storage_;  // of point p
+  std::vector<Point> points_;
+  std::vector<Anchor> anchors_;
   OdeState ode_;
   VectorArray position_, velocity_, positionBefore_, velocityBefore_, force_;
   SweepScratch scratch_;

@@ -69,13 +69,15 @@ class Integrator {
 // max_i |error(i)| scale(reference[i]); NaN if any component is not finite.
 template <class Error>
 double scaledNorm(std::span<const double> reference, const ErrorScale& scale, Error&& error) {
+  // No early way out: the loop then runs on vectors.
   double largest = 0;
+  bool finite = true;
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const double e = std::abs(error(i)) * scale(reference[i]);
-    if (!std::isfinite(e)) return std::numeric_limits<double>::quiet_NaN();
-    largest = std::max(largest, e);
+    largest = e > largest ? e : largest;
+    finite &= e < std::numeric_limits<double>::infinity();
   }
-  return largest;
+  return finite ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace fascia
