@@ -7,12 +7,14 @@ namespace {
 // to.
 class ScalarLeapfrog final : public Scheme {
  public:
-  explicit ScalarLeapfrog(const Skin& skin) : skin_(skin), force_(skin.layout().storage()) {}
+  explicit ScalarLeapfrog(const Skin& skin)
+      : skin_(skin), force_(skin.layout().storage()), anchorVelocity_(skin.layout().storage()) {}
 
   void run(const StepInterval& interval, VectorArray& r, VectorArray& v) override {
     const double h = interval.duration_s / interval.steps;
     if (std::abs(h - coefficients_.step_s) > 1e-6 * h)
       prepareStep(skin_.points(), skin_.contactResponse(), h, coefficients_);
+    carry(*interval.around, v);
     for (int s = 1; s <= interval.steps; ++s) {
       force_.fill(0.f);
       addMembrane(r);
@@ -24,6 +26,15 @@ class ScalarLeapfrog final : public Scheme {
   }
 
  private:
+  // Points with added mass take over their share of what their anchor's velocity changed.
+  void carry(const PointSurroundings& around, VectorArray& v) {
+    forEachFree(skin_, [&](std::size_t k) {
+      const Vec3f change = at(around.anchorVelocity, k) - at(anchorVelocity_, k);
+      put(v, k, at(v, k) + coefficients_.carried[k] * change);
+    });
+    anchorVelocity_ = around.anchorVelocity;
+  }
+
   void add(std::size_t k, const Vec3f& f) { put(force_, k, at(force_, k) + f); }
 
   void addEdge(const VectorArray& r, std::size_t a, std::size_t b, float w, float g) {
@@ -81,6 +92,7 @@ class ScalarLeapfrog final : public Scheme {
   const Skin& skin_;
   StepCoefficients coefficients_;
   VectorArray force_;
+  VectorArray anchorVelocity_;  // of the interval before
 };
 
 }  // namespace
