@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -53,14 +54,14 @@ inline CharacterDef smallCharacter() {
   return def;
 }
 
-// From one posture to another and back, each time within a microsecond, every `every_s`.
+// From one posture to another and back, each time within a tenth of a millisecond, every `every_s`.
 inline MotionDef teleport(double every_s, int times, double angle_rad, double way_m) {
   const auto keys = [&](double value) {
     std::vector<Key> out;
     const auto add = [&](double t, double v) { out.push_back({t, v, 1, 0, 0}); };
     add(0, 0);
     for (int n = 1; n <= times; ++n) {
-      add((n - 0.5) * every_s - 1e-6, n % 2 ? 0 : value);
+      add((n - 0.5) * every_s - 1e-4, n % 2 ? 0 : value);
       add((n - 0.5) * every_s, n % 2 ? value : 0);
     }
     return out;
@@ -72,26 +73,47 @@ inline MotionDef teleport(double every_s, int times, double angle_rad, double wa
   return motion;
 }
 
+// Fixed points are placed, not moved: their velocities are made anew for every interval.
 inline bool allFinite(const Character& character, const CharacterState& state) {
   const GridLayout& g = character.skin()->layout();
   bool finite = true;
-  for (const VectorArray* a : {&state.skin.position, &state.skin.velocity})
+  for (const VectorArray* a : {&state.skin.position, &state.skin.velocity}) {
+    const int fixed = a == &state.skin.velocity ? 1 : 0;
     for (const FloatArray* axis : {&a->x, &a->y, &a->z})
-      for (int j = 0; j < g.rows; ++j)
+      for (int j = fixed; j < g.rows - fixed; ++j)
         for (int i = 0; i < g.columns; ++i) finite = finite && std::isfinite((*axis)[g.at(i, j)]);
+  }
   return finite;
+}
+
+// The longest edge over the size of the whole skin: an exploded skin is larger than its body.
+inline double longestEdge(const Skin& skin, const SkinState& state) {
+  const GridLayout& g = skin.layout();
+  const VectorArray& r = state.position;
+  float longest = 0;
+  for (int j = 0; j < g.rows; ++j) {
+    for (int i = 0; i < g.columns; ++i) {
+      const std::size_t k = g.at(i, j);
+      for (const std::size_t q : {g.at(g.wrapped(i + 1), j), g.at(i, std::min(j + 1, g.rows - 1))})
+        longest = std::max(longest, std::hypot(r.x[q] - r.x[k], r.y[q] - r.y[k], r.z[q] - r.z[k]));
+    }
+  }
+  return longest / skin.size_m();
 }
 
 // What the frames of a run showed at their worst.
 struct Worst {
   bool finite = true;
-  double penetration_m = 0, stretch = 0;
+  double penetration_m = 0, stretch = 0, longestEdge = 0;
+  double lastStretch = 0;  // of the last frame
   SkinStats stats;
 
   void add(const Worst& other) {
     finite = finite && other.finite;
     penetration_m = std::max(penetration_m, other.penetration_m);
     stretch = std::max(stretch, other.stretch);
+    longestEdge = std::max(longestEdge, other.longestEdge);
+    lastStretch = std::max(lastStretch, other.lastStretch);
   }
 };
 
@@ -105,6 +127,8 @@ inline Worst simulate(const Character& character, int motion, double frame_s, in
     worst.finite = worst.finite && allFinite(character, state);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
                 worst.stats);
+    worst.longestEdge = std::max(worst.longestEdge, longestEdge(*character.skin(), state.skin));
+    worst.lastStretch = character.skin()->elastic().maxStretch(state.skin.position);
   }
   worst.penetration_m = worst.stats.max_penetration_m;
   worst.stretch = worst.stats.max_edge_stretch;

@@ -1,0 +1,122 @@
+// Every file in examples/ is a test case.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include <fascia/base/parallel.h>
+#include <fascia/io/character_file.h>
+#include <fascia/math/ode/integrators.h>
+
+#include "small_character.h"
+
+namespace fascia {
+namespace {
+
+std::vector<std::string> exampleFiles() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(FASCIA_SOURCE_DIR "/examples"))
+    if (entry.path().string().ends_with(".fascia.json")) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string nameOf(const testing::TestParamInfo<std::string>& file) {
+  std::string name = std::filesystem::path(file.param).stem().stem().string();
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return name;
+}
+
+class Examples : public testing::TestWithParam<std::string> {
+ protected:
+  // Short grids keep the tests quick; the models are the same.
+  Character load(int columns, int rows, const std::string& integrator = "") const {
+    BuildOptions options;
+    options.columns = columns, options.rows = rows;
+    options.integrator = integrator;
+    return loadCharacter(GetParam(), options);
+  }
+};
+
+std::uint64_t hashAfter(const Character& character, int frames) {
+  CharacterState state = initialState(character, 0);
+  SkinStats stats;
+  for (int f = 0; f < frames; ++f) advance(character, 0, 1.0 / 60, state, stats);
+  return hashOf(character, state);
+}
+
+TEST_P(Examples, HaveTheSameBitsOnAnyNumberOfThreads) {
+  for (const int side : {24, 72}) {
+    const Character character = load(side, side);
+    std::uint64_t hash[3];
+    for (int n = 0; n < 3; ++n) {
+      const ThreadLimit limit(1 << n);
+      hash[n] = hashAfter(character, 10);
+    }
+    EXPECT_EQ(hash[0], hash[1]) << side;
+    EXPECT_EQ(hash[0], hash[2]) << side;
+  }
+}
+
+TEST_P(Examples, HaveTheSameBitsOnAnyNumberOfThreadsWithEveryIntegrator) {
+  for (const IntegratorInfo& integrator : integrators()) {
+    const Character character = load(8, 12, std::string(integrator.name));
+    std::uint64_t hash[2];
+    for (int n = 0; n < 2; ++n) {
+      const ThreadLimit limit(n == 0 ? 1 : 4);
+      CharacterState state;
+      SkinStats stats;
+      poseLayers(character, 0, false, state);
+      carrySkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin);
+      for (int f = 0; f < 2; ++f) advance(character, 0, 1.0 / 60, state, stats);
+      hash[n] = hashOf(character, state);
+    }
+    EXPECT_EQ(hash[0], hash[1]) << integrator.name;
+  }
+}
+
+TEST_P(Examples, KeepTheSkinOutsideOfTheFleshInEveryFrameOfEveryMotion) {
+  const Character character = load(32, 32);
+  ASSERT_GE(character.motionCount(), 2u);
+  for (int m = 0; m < static_cast<int>(character.motionCount()); ++m) {
+    const BoundClip& clip = character.motion(static_cast<std::size_t>(m));
+    EXPECT_GE(clip.duration_s, 4);
+    const int frames = static_cast<int>(std::lround(clip.duration_s * 30));
+    const test::Worst worst = test::simulate(character, m, 1.0 / 30, frames);
+    EXPECT_TRUE(worst.finite) << clip.name;
+    EXPECT_LE(worst.penetration_m, 1e-4) << clip.name;
+    EXPECT_EQ(worst.stats.repaired_points, 0u) << clip.name;
+    EXPECT_LT(worst.stretch, 6) << clip.name;
+    RecordProperty(clip.name + ": deepest_um", std::to_string(1e6 * worst.penetration_m));
+    RecordProperty(clip.name + ": stretch", std::to_string(worst.stretch));
+  }
+}
+
+TEST_P(Examples, SurviveATeleportOfEveryJoint) {
+  CharacterDef def = readCharacterFile(GetParam()).def;
+  def.skin->columns = 20, def.skin->rows = 24;
+  def.simulation.settle_s = 0;
+  MotionDef jump = test::teleport(0.1, 4, 1, 1);
+  const std::vector<Key> there = jump.tracks[0].keys;
+  jump.tracks.clear();
+  for (const JointDef& joint : def.skeleton.joints) {
+    for (const DofDef& dof : joint.dofs) {
+      std::vector<Key> keys = there;
+      for (Key& k : keys) k.value *= isRotation(dof.dof) ? kPi / 2 : 2;  // within its limits
+      jump.tracks.push_back(test::track(joint.name, std::string(name(dof.dof)), keys));
+    }
+  }
+  def.motions = {jump};
+  const Character character(def);
+  for (const double frame : {1.0 / 240, 1.0 / 60, 1.0 / 12}) {
+    const test::Worst worst = test::simulate(character, 0, frame, static_cast<int>(0.5 / frame));
+    EXPECT_TRUE(worst.finite) << frame;
+    EXPECT_LE(worst.penetration_m, 1e-4) << frame;
+    EXPECT_LE(worst.longestEdge, 2.5) << frame;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, Examples, testing::ValuesIn(exampleFiles()), nameOf);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Examples);
+
+}  // namespace
+}  // namespace fascia
