@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <type_traits>
 
 namespace fascia {
 
@@ -23,5 +24,12 @@ int threadLimit();  // how many threads parallelFor uses now
 // Runs task(i) for i in [0, count). Tasks must not depend on each other or on their order, so that
 // results have the same bits on any number of threads. Runs inline with one thread or one task.
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& task);
+
+// The same by reference: a task that captures much would be copied to the heap on every call.
+template <class Task>
+requires(!std::is_same_v<Task, std::function<void(std::size_t)>>) void parallelFor(
+    std::size_t count, const Task& task) {
+  parallelFor(count, std::function<void(std::size_t)>(std::cref(task)));
+}
 
 }  // namespace fascia

@@ -36,7 +36,7 @@ class FleshContact {
   float deepest(const Field& field, const PointModel& points, const VectorArray& position) const;
 
  private:
-  static constexpr int kPasses = 32;  // 8 left points half a millimetre deep in creases
+  static constexpr int kPasses = 128;  // 32 left points up to a millimetre deep in creases
   std::vector<PointBlock> blocks_;
   std::vector<Result> results_;
   std::vector<Box> boxes_;
