@@ -44,7 +44,7 @@ CodecPtr<SkinEndDef> endCodec() {
       .field("axis", &SkinEndDef::axis, vectors({-1e6, 1e6}),
              "Towards the end, in the joint's frame; none: away from the other end")
       .field("radius_m", &SkinEndDef::radius_m, numbers({0, 1000}),
-             "Of the ring; 0: 0.7 of the spacing of the rows");
+             "Of the ring; 0: 0.022 of the distance of the two ends");
   return codec;
 }
 

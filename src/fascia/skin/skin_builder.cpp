@@ -14,6 +14,9 @@ constexpr int kMinSide = 8, kMaxSide = 4096;
 // Share of the skin's mass that the automatic step may add to points whose cells are much smaller
 // than the rest (the rings at the ends): below this no one sees a difference.
 constexpr double kAddedMassShare = 0.02;
+// Radius of an end ring that the file leaves open, over the distance of the ends. The same at every
+// resolution: a membrane held at a mere point would stretch without bound there.
+constexpr double kEndRadius = 0.022;
 // A skin whose waves need shorter steps than this rides on a coarse one with about so many points.
 constexpr double kFinestStep_s = 0.4e-3;
 constexpr std::size_t kCoarsePoints = 1200;
@@ -203,9 +206,9 @@ class SkinBuilder {
           exitPoint(base_.posedFlesh, origin[e], rings[e]->axis, def_.fat.thickness_m);
       joint_[e] = joints[e];
     }
-    const double spacing = (top.center_m - bottom.center_m).norm() / skin_.layout_.rows;
+    const double length = (top.center_m - bottom.center_m).norm();
     for (int e = 0; e < 2; ++e) {
-      rings[e]->radius_m = ends[e]->radius_m > 0 ? ends[e]->radius_m : 0.7 * spacing;
+      rings[e]->radius_m = ends[e]->radius_m > 0 ? ends[e]->radius_m : kEndRadius * length;
       if (rings[e]->radius_m > 1e-6) continue;
       error(e == 0 ? "/bottom" : "/top", "found both ends of the skin in the same place",
             "fix the ends to different joints, or give them different axes");

@@ -41,7 +41,7 @@ struct SkinEndDef {
   Vec3 position_m = Vec3::Zero();  // in the joint's frame; the ring's centre lies on the flesh
                                    // surface on the ray from here along axis
   Vec3 axis = Vec3::Zero();        // in the joint's frame; zero = away from the other end
-  double radius_m = 0;             // of the ring; 0 = 0.7 of the spacing of rows
+  double radius_m = 0;             // of the ring; 0 = 0.022 of the distance of the two ends
 };
 
 // The named per-point quantities that region edits and brushes change.

@@ -113,6 +113,14 @@ void setEnds(const GridLayout& g, const EndRing& bottom, const EndRing& top, con
   fillPads(g, r);
 }
 
+// The share of the gap to the flesh that a point closes per sweep. Tension pulls with the square of
+// the points' spacing, so clinging has to weaken alike, or finer skins would follow hollows more.
+double clingRate(const GridLayout& g, const WrapOptions& options) {
+  constexpr double kReferencePoints = 1024;
+  return 0.5 * options.cling *
+         std::min(1.0, kReferencePoints / static_cast<double>(g.pointCount()));
+}
+
 VectorArray sphereAround(const Field& field, const GridLayout& g, const Vec3& upAxis) {
   Box box;
   for (std::size_t s = 0; s < field.solidCount(); ++s)
@@ -193,7 +201,7 @@ VectorArray shrinkWrap(const Field& field, const GridLayout& layout, const EndRi
     setEnds(levels[n], bottom, top, upAxis, r);
     // Shrink first, cling then: clinging from afar would pull rows to whatever is nearest.
     if (coarsest) relax(field, levels[n], options, 0, kFirstIterations, r);
-    relax(field, levels[n], options, 0.5 * options.cling, kIterations, r);
+    relax(field, levels[n], options, clingRate(levels[n], options), kIterations, r);
   }
   return r;
 }
