@@ -12,8 +12,8 @@ namespace fascia {
 // A run of a skin, frame by frame: where its points were, and what that cost.
 struct Trajectory {
   std::vector<VectorArray> frames;  // positions at the end of each frame, storage order
-  double wall_s = 0;                // all told
-  double stepping_s = 0;            // of it in the scheme: without posing and contact projection
+  double cpu_s = 0;                 // processor time, all told
+  double stepping_s = 0;            // of it in a Scheme: without posing and contact projection
   double steps = 0;
 };
 

@@ -57,9 +57,10 @@ FasciaRun runFascia(const SheetScene& scene, const FasciaSettings& settings, int
   return run;
 }
 
-// With the softest material that stretches no more than `limit`.
-FasciaRun runFasciaWithin(const SheetScene& scene, double limit, int frames) {
-  FasciaSettings settings{kSoftest_N_per_m};
+// With the softest material, `softest` or stiffer, that stretches no more than `limit`.
+FasciaRun runFasciaWithin(const SheetScene& scene, double limit, double softest_N_per_m,
+                          int frames) {
+  FasciaSettings settings{softest_N_per_m};
   for (; settings.stiffness_N_per_m < kStiffest_N_per_m;
        settings.stiffness_N_per_m *= std::sqrt(2)) {
     if (!(runFascia(scene, settings, kSearchFrames).result.stretch <= limit)) continue;
@@ -124,18 +125,22 @@ void compare(const SheetScene& scene, const PeerOptions& options, Report& report
     report.add(scene, "Bullet",
                fmt::format("{} substeps x {} iterations", settings.substeps, settings.iterations),
                1, theirs, 0);
-    const FasciaRun ours = runFasciaWithin(scene, theirs.stretch, options.frames);
+    const FasciaRun ours = runFasciaWithin(scene, theirs.stretch, kSoftest_N_per_m, options.frames);
     report.add(scene, ours, 1, theirs.frame_s / ours.result.frame_s);
   }
 }
 
 void runPeers(const PeerOptions& options, const Console& console) {
   Report report(console);
+  double firm_N_per_m = kSoftest_N_per_m;
   for (const int points : options.points) {
     const SheetScene scene{static_cast<int>(std::lround(std::sqrt(points)))};
     const ThreadLimit oneThread(1);
     if (points <= kMostBulletPoints) compare(scene, options, report);
-    report.add(scene, runFasciaWithin(scene, kFirmStretch, options.frames), 1, 0);
+    // Finer sheets need no softer material: the search goes on where the last one ended.
+    const FasciaRun firm = runFasciaWithin(scene, kFirmStretch, firm_N_per_m, options.frames);
+    firm_N_per_m = firm.settings.stiffness_N_per_m;
+    report.add(scene, firm, 1, 0);
   }
   report.finish();
 }
