@@ -36,7 +36,7 @@ class FleshContact {
   float deepest(const Field& field, const PointModel& points, const VectorArray& position) const;
 
  private:
-  static constexpr int kPasses = 128;  // 32 left points up to a millimetre deep in creases
+  static constexpr int kPasses = 16;  // more than creases of three solids need
   std::vector<PointBlock> blocks_;
   std::vector<Result> results_;
   std::vector<Box> boxes_;

@@ -29,6 +29,7 @@ BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const Fl
     const V3 r = pointers(position).at(k);
     const V thickness = hn::LoadU(d, fat.data() + k);
     pointers(lanes.place).set(l, r);
+    pointers(lanes.pushNormal).set(l, {hn::Zero(d), hn::Zero(d), hn::Zero(d)});
     hn::StoreU(thickness, d, lanes.fat.data() + l);
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));
@@ -55,7 +56,17 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
     deepest = hn::Max(deepest, depth);
     const V3 normal = pointers(lanes.normal).at(l);
     const MutablePointers place = pointers(lanes.place);
-    if (move) place.set(l, select(used, mulAdd(depth, normal, place.at(l)), place.at(l)));
+    if (move) {
+      const MutablePointers push = pointers(lanes.pushNormal);
+      const V3 before = push.at(l);
+      const V back = hn::Min(dot(normal, before), hn::Zero(d));
+      // Along the other's surface t = n − (n·p) p the way out is depth / (n·t), n·t = 1 − (n·p)².
+      const V slope = hn::Max(hn::NegMulAdd(back, back, hn::Set(d, 1.f)), hn::Set(d, 0.02f));
+      const V3 along = mulAdd(hn::Neg(back), before, normal);
+      const auto inside = hn::And(used, hn::Gt(depth, hn::Zero(d)));
+      place.set(l, select(inside, mulAdd(hn::Div(depth, slope), along, place.at(l)), place.at(l)));
+      push.set(l, select(inside, normal, before));
+    }
     const V outside = hn::Max(gap, hn::Zero(d));
     const V nearest = hn::LoadU(d, lanes.nearest.data() + l);
     const auto nearer = hn::Lt(outside, nearest);

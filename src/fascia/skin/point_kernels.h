@@ -31,6 +31,7 @@ struct ContactLanes {
   Lanes3 place;                           // r, moved out of solids as they are visited
   Lanes3 normal;                          // written by Field::evaluate
   Lanes3 nearestNormal;                   // of the nearest solid so far
+  Lanes3 pushNormal;                      // of the last solid that moved the point; 0 = none
   Lanes3 fleshVelocity;                   // of that solid's matter
   alignas(64) Lanes<float> fat;           // distance to keep
   alignas(64) Lanes<float> distance;      // written by Field::evaluate
@@ -47,7 +48,9 @@ BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
                           const FloatArray& fat, ContactLanes& lanes);
 
 // Takes up the distances and normals to one solid: moves points that are inside out of it (if
-// `move`), keeps the nearest. Returns the largest depth found.
+// `move`), keeps the nearest. Returns the largest depth found. A point that another solid has just
+// moved, and that would be moved back into it, leaves along that one's surface instead: in a crease
+// between two solids going to and fro would take dozens of turns.
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes);
 
 // Copies `velocity` to the lanes whose nearest solid this is.
