@@ -44,8 +44,7 @@ namespace {
 TEST(Allocation, AdvancingMakesNoneAfterWarmUp) {
   const ThreadLimit limit(1);
   for (const int side : {16, 80}) {  // the second rides on a coarse grid
-    CharacterDef def = test::smallCharacter();
-    def.skin->columns = def.skin->rows = side;
+    CharacterDef def = test::fineCharacter(side);
     def.skin->material.bending_Nm = side == 16 ? 1e-3 : 0;
     const Character character(def);
     ASSERT_EQ(character.skin()->coarse() != nullptr, side == 80);

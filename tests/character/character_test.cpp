@@ -21,9 +21,7 @@ std::uint64_t hashAfter(const Character& character, int frames) {
 
 TEST(Determinism, SameBitsOnAnyNumberOfThreads) {
   for (const int rows : {16, 24, 128}) {  // the last rides on a coarse grid, in tiles
-    CharacterDef def = test::smallCharacter();
-    def.skin->columns = rows, def.skin->rows = rows;
-    const Character character(def);
+    const Character character(test::fineCharacter(rows));
     EXPECT_EQ(character.skin()->coarse() != nullptr, rows == 128);
     std::uint64_t hash[3];
     for (int n = 0; n < 3; ++n) {
@@ -48,9 +46,7 @@ TEST(Determinism, TheBuiltSkinHasTheSameBitsOnAnyNumberOfThreads) {
 
 TEST(CharacterState, RewoundToACopyGivesTheSameBits) {
   for (const int side : {16, 80}) {
-    CharacterDef def = test::smallCharacter();
-    def.skin->columns = def.skin->rows = side;
-    const Character character(def);
+    const Character character(test::fineCharacter(side));
     CharacterState state = run(character, 5, initialState(character, 0));
     const CharacterState saved = state;
     const std::uint64_t before = hashOf(character, state);

@@ -54,6 +54,15 @@ inline CharacterDef smallCharacter() {
   return def;
 }
 
+// Fine and stiff enough to ride on a coarse copy of itself.
+inline CharacterDef fineCharacter(int side) {
+  CharacterDef def = smallCharacter();
+  def.skin->columns = def.skin->rows = side;
+  def.skin->material.stretch_u_N_per_m = def.skin->material.stretch_v_N_per_m = 1500;
+  def.skin->material.shear_N_per_m = 600;
+  return def;
+}
+
 // From one posture to another and back, each time within a tenth of a millisecond, every `every_s`.
 inline MotionDef teleport(double every_s, int times, double angle_rad, double way_m) {
   const auto keys = [&](double value) {
