@@ -104,12 +104,13 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
   if (def_.skin && options.rows > 0) def_.skin->rows = options.rows;
 
   Diagnostics diagnostics;
-  checkSimulation(def_.simulation, diagnostics);
   skeleton_ = Skeleton(def_.skeleton, "/skeleton", diagnostics);
   // Joints are referred to by name everywhere below: without them more messages would mislead.
   diagnostics.throwIfErrors();
   flesh_ = Flesh(def_.flesh, skeleton_, "/solids", diagnostics);
   ornaments_ = Flesh(def_.ornaments, skeleton_, "/ornaments", diagnostics, Flesh::Role::ornament);
+  const bool hasFlesh = diagnostics.ok();
+  checkSimulation(def_.simulation, diagnostics);
   for (std::size_t i = 0; i < def_.motions.size(); ++i) {
     const std::string pointer = "/motions/" + std::to_string(i);
     clips_.push_back(
@@ -119,7 +120,7 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
         diagnostics.error(pointer + "/name", "found '" + def_.motions[i].name + "' a second time",
                           "give every motion a name of its own");
   }
-  if (def_.skin && diagnostics.ok()) {
+  if (def_.skin && hasFlesh) {
     PosedSkeleton posedSkeleton;
     PosedFlesh posedFlesh;
     const Posture rest = skeleton_.restPosture();

@@ -37,14 +37,14 @@ class ElasticGrid {
   ElasticGrid(const GridLayout& layout, const VectorArray& rest, const GridMaterial& material);
 
   const GridLayout& layout() const { return layout_; }
-  double energy(const VectorArray& position) const;                    // joule
-  void forces(const VectorArray& position, VectorArray& force) const;  // newton, overwrites
+  double energy(const VectorArray& position) const;  // joule
   // Adds the force Jacobian ∂f/∂r (negative semi-definite part only when `definite`): row and
   // column 3p+c for point p = j·columns + i.
   void addForceJacobian(const VectorArray& position, bool definite,
                         std::vector<Eigen::Triplet<double>>& entries) const;
-  // An upper bound of the row sums of |−∂f/∂r| for every point and every posture within
-  // max_stretch: what explicit steps must resolve, N/m.
+  // A bound of the row sums of |−∂f/∂r| for every point and every posture within max_stretch, N/m:
+  // what explicit steps must resolve. Cells that fold onto a line while they are stretched to the
+  // plateau can exceed it by two thirds; such a posture does not last.
   const FloatArray& stiffnessBound() const { return bound_; }
   // Largest edge length over its rest-shape length (prestretch does not count).
   double maxStretch(const VectorArray& position) const;

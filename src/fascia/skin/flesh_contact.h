@@ -27,8 +27,10 @@ class FleshContact {
   // Projects points out of the solids exactly, removes the approaching part of their velocity
   // relative to the flesh, and writes each point's half space (normal, offset, flesh velocity) for
   // the steps that follow: the nearest solid within `reach_m`.
-  // Candidate solids come from boxes of blocks against boxes of solids; a point in several solids
-  // is projected in turn until it is outside of all, or kPasses are used up.
+  // Candidate solids come from boxes of blocks against boxes of solids, and from the gap that was
+  // found when a block was last tested against a solid, less the ways both have gone since: solids
+  // that cannot have come within reach are not asked again. A point in several solids is projected
+  // in turn until it is outside of all, or kPasses are used up.
   Result project(const Field& field, const PointModel& points, float reach_m, float restitution,
                  VectorArray& position, VectorArray& velocity, PointSurroundings& around);
 
@@ -36,11 +38,20 @@ class FleshContact {
   float deepest(const Field& field, const PointModel& points, const VectorArray& position) const;
 
  private:
-  static constexpr int kPasses = 16;  // more than creases of three solids need
+  static constexpr int kPasses = 16;   // more than creases of three solids need
+  static constexpr int kSearches = 4;  // each at least twice as wide as the one before
+  void followSolids(const Field& field);
+
   std::vector<PointBlock> blocks_;
   std::vector<Result> results_;
   std::vector<Box> boxes_;
   std::vector<std::int32_t> nearby_;  // per task: as many as there are solids
+
+  // What is known from the last call; it saves work and changes no result.
+  VectorArray last_;         // positions
+  std::vector<float> gaps_;  // blocks x solids: no point of the block is nearer
+  std::vector<float> solidMoved_;
+  VectorArray corners_, cornersNow_, cornerMaterial_;  // eight points around each solid
 };
 
 }  // namespace fascia

@@ -1,5 +1,7 @@
 #include <fascia/skin/point_kernels.h>
 
+#include <cmath>
+
 // SSSE3 and AVX3_DL add code, not speed, here.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -20,8 +22,9 @@ inline Pointers pointers(const ContactLanes::Lanes3& a) {
 }
 
 BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const FloatArray& fat,
-                  ContactLanes& lanes) {
+                  ContactLanes& lanes, VectorArray* last, float* moved) {
   const D d;
+  V farthest = hn::Zero(d);
   const V big = hn::Set(d, 1e30f);
   V3 low{big, big, big}, high = scaled(hn::Set(d, -1.f), low);
   for (std::size_t l = 0; l < block.count; l += hn::Lanes(d)) {
@@ -33,11 +36,17 @@ BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const Fl
     hn::StoreU(thickness, d, lanes.fat.data() + l);
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));
+    if (last) {
+      const V3 way = r - pointers(*last).at(k);
+      farthest = hn::Max(farthest, hn::IfThenElseZero(used, dot(way, way)));
+      pointers(*last).set(k, r);
+    }
     const V3 around{thickness, thickness, thickness};
     const V3 forLow = select(used, r - around, low), forHigh = select(used, r + around, high);
     low = {hn::Min(low.x, forLow.x), hn::Min(low.y, forLow.y), hn::Min(low.z, forLow.z)};
     high = {hn::Max(high.x, forHigh.x), hn::Max(high.y, forHigh.y), hn::Max(high.z, forHigh.z)};
   }
+  if (moved) *moved = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, farthest)));
   const auto least = [&](V v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
   const auto most = [&](V v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
   return {{least(low.x), least(low.y), least(low.z)}, {most(high.x), most(high.y), most(high.z)}};
@@ -45,7 +54,7 @@ BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const Fl
 
 float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
   const D d;
-  V deepest = hn::Zero(d);
+  V smallest = hn::Set(d, 1e30f);
   for (std::size_t l = 0; l < count; l += hn::Lanes(d)) {
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(count)));
@@ -53,7 +62,7 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
         used, hn::Sub(hn::LoadU(d, lanes.distance.data() + l), hn::LoadU(d, lanes.fat.data() + l)),
         hn::Set(d, 1e30f));
     const V depth = hn::Max(hn::Neg(gap), hn::Zero(d));
-    deepest = hn::Max(deepest, depth);
+    smallest = hn::Min(smallest, gap);
     const V3 normal = pointers(lanes.normal).at(l);
     const MutablePointers place = pointers(lanes.place);
     if (move) {
@@ -76,7 +85,7 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
     float* solids = lanes.nearestSolid.data() + l;
     hn::StoreU(hn::IfThenElse(nearer, hn::Set(d, solid), hn::LoadU(d, solids)), d, solids);
   }
-  return hn::GetLane(hn::MaxOfLanes(d, deepest));
+  return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
 
 void absorbVelocityImpl(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes) {
@@ -108,11 +117,12 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
     } else {
       const V nearest = hn::LoadU(d, lanes.nearest.data() + l);
       const auto isFree = hn::Gt(hn::LoadU(d, points.free.data() + k), zero);
-      const auto touching = hn::And(hn::And(used, isFree), hn::Le(nearest, hn::Set(d, reach)));
-      // A point that was moved out of a solid may end a rounding error outside of it.
+      // A point that was moved out of a solid may end a little outside of it, or well outside.
       const V3 place = r.at(k), way = pointers(lanes.place).at(l) - place;
-      const auto moved = hn::Gt(dot(way, way), zero);
-      const auto onFlesh = hn::And(touching, hn::Or(moved, hn::Le(nearest, zero)));
+      const auto candidate = hn::And(used, isFree);
+      const auto moved = hn::And(candidate, hn::Gt(dot(way, way), zero));
+      const auto touching = hn::Or(moved, hn::And(candidate, hn::Le(nearest, hn::Set(d, reach))));
+      const auto onFlesh = hn::Or(moved, hn::And(touching, hn::Le(nearest, zero)));
       const V3 normal = select(touching, pointers(lanes.nearestNormal).at(l), zero3);
       const V3 flesh = select(touching, pointers(lanes.fleshVelocity).at(l), zero3);
       const V3 now = select(onFlesh, pointers(lanes.place).at(l), place);
@@ -193,8 +203,9 @@ HWY_EXPORT(followCarrierImpl);
 HWY_EXPORT(brokenImpl);
 
 BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
-                          const FloatArray& fat, ContactLanes& lanes) {
-  return HWY_DYNAMIC_DISPATCH(loadImpl)(block, position, fat, lanes);
+                          const FloatArray& fat, ContactLanes& lanes, VectorArray* last,
+                          float* moved_m) {
+  return HWY_DYNAMIC_DISPATCH(loadImpl)(block, position, fat, lanes, last, moved_m);
 }
 
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {

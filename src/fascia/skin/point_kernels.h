@@ -43,14 +43,16 @@ struct BlockBox {
   float low[3], high[3];
 };
 
-// Loads a block's places and fat; returns the box of the points with their fat around them.
+// Loads a block's places and fat; returns the box of the points with their fat around them. Sets
+// `moved_m` to the farthest that a point is from where `last` has it, and updates `last`.
 BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
-                          const FloatArray& fat, ContactLanes& lanes);
+                          const FloatArray& fat, ContactLanes& lanes, VectorArray* last = nullptr,
+                          float* moved_m = nullptr);
 
 // Takes up the distances and normals to one solid: moves points that are inside out of it (if
-// `move`), keeps the nearest. Returns the largest depth found. A point that another solid has just
-// moved, and that would be moved back into it, leaves along that one's surface instead: in a crease
-// between two solids going to and fro would take dozens of turns.
+// `move`), keeps the nearest. Returns the smallest gap found, negative = inside. A point that
+// another solid has just moved, and that would be moved back into it, leaves along that one's
+// surface instead: in a crease between two solids going to and fro would take dozens of turns.
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes);
 
 // Copies `velocity` to the lanes whose nearest solid this is.

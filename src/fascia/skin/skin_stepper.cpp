@@ -235,9 +235,9 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   }
   if (state.ready) std::swap(state.surroundings.anchor, nextAnchor_);
   fillPads(g, state.position);
-  // Twice the way that the fastest point can go until the next test.
-  const float reach = 2 * state.maxSpeed_m_per_s * static_cast<float>(duration_s) +
-                      0.01f * static_cast<float>(skin_->size_m());
+  // More than the way that the fastest point goes until the next test.
+  const float reach = 1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) +
+                      0.005f * static_cast<float>(skin_->size_m());
   state.maxSpeed_m_per_s = contact_
                                .project(*pose.field, skin_->points(), reach,
                                         static_cast<float>(skin_->contactResponse().restitution),
