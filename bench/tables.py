@@ -2,6 +2,7 @@
 """Puts the figures of bench/results/*.json into the tables of docs/performance.md.
 
     fascia bench paper --json > bench/results/paper.json      (likewise scaling, peers)
+    fascia_bench --benchmark_repetitions=5 --benchmark_format=json > bench/results/kernels.json
     bench/tables.py
 """
 
@@ -53,14 +54,22 @@ def peers(results):
         f"**{r['times_bullet']:.1f}**" if "times_bullet" in r else ""] for r in results])
 
 
+def kernels(results):
+    return table(["kernel / columns / rows", "ns per point"], [[
+        b["run_name"], f"{1e9 * b['s_per_point']:.1f}"]
+        for b in results if b.get("aggregate_name") == "median" and "s_per_point" in b])
+
+
 def main():
     page = ROOT / "docs" / "performance.md"
     text = page.read_text()
-    for name, render in (("paper", paper), ("scaling", scaling), ("peers", peers)):
+    for name, render in (("paper", paper), ("scaling", scaling), ("peers", peers),
+                         ("kernels", kernels)):
         file = ROOT / "bench" / "results" / f"{name}.json"
         if not file.exists():
             continue
-        body = render(json.loads(file.read_text())["results"])
+        document = json.loads(file.read_text())
+        body = render(document.get("results") or document["benchmarks"])
         pattern = rf"(<!-- {name} -->\n).*?(<!-- end -->)"
         text = re.sub(pattern, lambda m, b=body: f"{m[1]}{b}\n{m[2]}", text, flags=re.S)
     page.write_text(text)
