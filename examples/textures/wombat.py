@@ -16,15 +16,15 @@ import struct
 import sys
 import zlib
 
-WIDTH, HEIGHT = 768, 512
+WIDTH, HEIGHT = 1024, 512
 
-BACK = (92, 77, 66)  # umber
-FLANK = (128, 110, 94)
-BELLY = (176, 158, 138)
-MUZZLE = (182, 162, 140)
+BACK = (88, 76, 66)  # umber
+FLANK = (122, 109, 96)
+BELLY = (150, 143, 132)
+MUZZLE = (172, 162, 146)
 ASH = (150, 140, 130)  # the grey of the hips
 DARK = (64, 52, 45)
-GOLD = (168, 136, 100)  # tips of the hairs
+GOLD = (160, 138, 106)  # tips of the hairs
 ROSE = (196, 148, 132)
 
 
@@ -59,9 +59,10 @@ class Noise:
 
 
 # Strands: many cells around, few along. Fewer hairs go around the narrow head.
-BODY_HAIR = Noise(190, 36, 1)
-BODY_LOCKS = Noise(80, 22, 2)
-HEAD_HAIR = Noise(96, 60, 3)
+BODY_HAIR = Noise(240, 40, 1)
+BODY_LOCKS = Noise(90, 24, 2)
+HEAD_HAIR = Noise(140, 80, 3)
+HEAD_LOCKS = Noise(70, 50, 6)
 PATCHES = Noise(7, 6, 4)
 SWAY = Noise(9, 10, 5)
 
@@ -72,8 +73,10 @@ def fur(u, v):
     sway = 0.035 * (SWAY.at(u, v) - 0.5)
     comb = u + sway + 0.10 * math.sin(2 * math.pi * side) * (1 - v)  # hair falls backwards and down
     body = 0.6 * BODY_HAIR.at(comb, v) + 0.4 * BODY_LOCKS.at(comb, v)
-    head = HEAD_HAIR.at(u + 0.5 * sway, v)
-    return body + (head - body) * smooth(0.68, 0.80, v)
+    head = 0.6 * HEAD_HAIR.at(u + sway, v) + 0.4 * HEAD_LOCKS.at(u + sway, v)
+    hair = body + (head - body) * smooth(0.68, 0.80, v)
+    ends = smooth(0.01, 0.07, v) * smooth(1.0, 0.94, v)  # strands would crowd where the tube closes
+    return 0.5 + (hair - 0.5) * ends
 
 
 def spot(u, v, u0, v0, radius_u, radius_v):
@@ -95,13 +98,13 @@ def color(u, v):
     # The face: a pale muzzle, dark around the eyes, a pale brow above them, rosy cheeks.
     c = mix(c, MUZZLE, 0.9 * smooth(0.885, 0.945, v - 0.02 * down))
     c = mix(c, MUZZLE, 0.7 * smooth(0.74, 0.82, v) * smooth(0.55, 0.8, down))
-    c = mix(c, BACK, 0.75 * spot(u, v, 0.0, 0.90, 0.045, 0.07))
+    c = mix(c, BACK, 0.6 * spot(u, v, 0.0, 0.90, 0.05, 0.06))
     c = mix(c, DARK, 0.8 * spot(u, v, 0.165, 0.865, 0.052, 0.042))
     c = mix(c, MUZZLE, 0.5 * spot(u, v, 0.125, 0.80, 0.045, 0.028))
-    c = mix(c, ROSE, 0.45 * spot(u, v, 0.29, 0.845, 0.055, 0.04))
+    c = mix(c, ROSE, 0.2 * spot(u, v, 0.29, 0.845, 0.055, 0.04))
 
     hair = fur(u, v)
-    depth = 0.30 - 0.10 * smooth(0.88, 0.97, v)
+    depth = 0.34 - 0.14 * smooth(0.68, 0.80, v)
     c = mix(c, GOLD, 0.30 * smooth(0.62, 0.95, hair))
     shade = 1 - depth * smooth(0.55, 0.12, hair) + 0.10 * smooth(0.55, 0.9, hair)
     return tuple(x * shade for x in c)
