@@ -7,8 +7,8 @@ Only the standard library is needed. Everything is painted in the skin's own coo
 a tube from the left wrist (v = 0) to the right wrist (v = 1); u runs around it: 0 the middle of the
 back, 0.25 underneath, 0.5 the front, 0.75 on top. Where things are:
 
-    v   wrist 0 | elbow 0.15 | biceps 0.24 | shoulder 0.32 | breastbone 0.50 | ... | right wrist 1
-    u   at v = 0.5:  navel 0.30 | ribs 0.36 | below the pectorals 0.44 | nipples 0.51 | throat 0.70
+    v   wrist 0 | elbow 0.17 | biceps 0.25 | shoulder 0.33 | breastbone 0.50 | ... | right wrist 1
+    u   at v = 0.5:  navel 0.30 | ribs 0.36 | below the pectorals 0.42 | nipples 0.47 | throat 0.73
 """
 import math
 import os
@@ -17,7 +17,7 @@ import struct
 import sys
 import zlib
 
-WIDTH, HEIGHT = 512, 1024
+WIDTH, HEIGHT = 1024, 512
 
 SKIN = (226, 164, 133)
 LIGHT = (238, 184, 153)
@@ -28,13 +28,13 @@ HAIR = (74, 46, 33)
 INK = (46, 66, 96)
 HEART = (186, 46, 52)
 
-SPAN = 1.44  # metres from wrist to wrist
+SPAN = 1.56  # metres from wrist to wrist
 
 # Height above the ground of the trunk's outline, once around, from the back over the belly.
-OUTLINE = [(0.0, 0.72), (0.06, 0.68), (0.12, 0.63), (0.19, 0.56), (0.25, 0.41), (0.28, 0.42),
-           (0.31, 0.52), (0.34, 0.58), (0.38, 0.63), (0.44, 0.66), (0.50, 0.70), (0.56, 0.76),
-           (0.62, 0.82), (0.69, 0.84), (0.72, 0.87), (0.75, 0.91), (0.78, 1.00), (0.81, 0.92),
-           (0.84, 0.89), (0.88, 0.85), (0.94, 0.79), (1.0, 0.72)]
+OUTLINE = [(0.0, 0.75), (0.06, 0.71), (0.12, 0.67), (0.16, 0.63), (0.19, 0.59), (0.22, 0.54),
+           (0.25, 0.45), (0.28, 0.44), (0.31, 0.57), (0.34, 0.62), (0.41, 0.645), (0.44, 0.67),
+           (0.50, 0.74), (0.56, 0.80), (0.62, 0.83), (0.72, 0.87), (0.75, 0.92), (0.78, 1.02),
+           (0.81, 0.93), (0.84, 0.89), (0.91, 0.84), (1.0, 0.75)]
 
 
 def height(u):
@@ -96,8 +96,8 @@ def chest_hair():
     """Short strokes, as (x, y, x, y) in metres: a tuft between the pectorals."""
     dice = random.Random(7)
     strokes = []
-    for _ in range(130):
-        x, y = dice.gauss(0, 0.032), dice.gauss(0.735, 0.028)
+    for _ in range(190):
+        x, y = dice.gauss(0, 0.03), dice.gauss(0.74, 0.025)
         turn = dice.uniform(-0.9, 0.9) - 12 * x
         length = dice.uniform(0.008, 0.016)
         strokes.append((x, y, x + length * math.sin(turn), y - length * math.cos(turn)))
@@ -117,7 +117,7 @@ def front(x, y, color):
     belly = smooth(0.43, 0.46, y) * smooth(0.655, 0.63, y)
     dark += 0.55 * groove(side, 0.008) * belly * smooth(0.46, 0.5, y)
     # Six-pack: three furrows across, one down each side.
-    for furrow in (0.605, 0.553, 0.5):
+    for furrow in (0.617, 0.577):
         dark += 0.5 * groove(y - furrow - 2 * side * side, 0.009) * smooth(0.105, 0.08, side) * belly
     dark += 0.5 * groove(side - 0.1 + 0.25 * (0.6 - y), 0.011) * belly
     # Ribs fan out beside it.
@@ -131,14 +131,14 @@ def front(x, y, color):
     color = mix(color, LIGHT, 0.5 * dab(side, y, 0.1, 0.765, 0.06, 0.035))
     color = mix(color, RED, 0.35 * dab(side, y, 0.12, 0.69, 0.07, 0.03))
     # Nipples and navel.
-    d = math.hypot(side - 0.128, y - 0.708)
+    d = math.hypot(side - 0.125, y - 0.708)
     color = mix(color, NIPPLE, 0.9 * smooth(0.021, 0.015, d))
     color = mix(color, SHADE, 0.6 * smooth(0.009, 0.005, d))
-    d = math.hypot(x / 0.8, y - 0.485)
-    color = mix(color, mix(SHADE, HAIR, 0.6), 0.9 * smooth(0.014, 0.008, d))
+    d = math.hypot(x, y - 0.55)
+    color = mix(color, mix(SHADE, HAIR, 0.6), 0.9 * smooth(0.013, 0.007, d))
     if side < 0.12 and 0.63 < y < 0.84:
         d = min(segment(x, y, *stroke) for stroke in STROKES)
-        color = mix(color, HAIR, 0.8 * smooth(0.0022, 0.001, d))
+        color = mix(color, HAIR, 0.55 * smooth(0.0019, 0.0007, d))
     return color
 
 
@@ -189,10 +189,10 @@ def color_at(u, v):
         painted = front(x, y, color) if 0.25 < u < 0.77 else back(x, y, color)
         color = mix(color, painted, trunk)
     # The arms: furrows between deltoid and biceps, around the elbow's crook.
-    around = (u - 0.57) * 0.5
+    around = (u - 0.60) * 0.56
     dark = 0.4 * groove(side - 0.325 - 0.35 * abs(u - 0.56), 0.012) * groove(u - 0.58, 0.12)
     color = mix(color, SHADE, dark)
-    along = (side - 0.40) * -1.05
+    along = (side - 0.36) * -0.9
     if x > 0:
         color = mix(color, INK, 0.88 * anchor(along, around))
     else:
