@@ -10,13 +10,11 @@
 namespace fascia {
 namespace {
 
-// A projection larger than this makes a block with several solids be tested again.
+// Only a projection larger than this makes a block with several solids be tested again.
 constexpr float kRetest_m = 1e-5f;
 // Bound of how far a point goes when pushed out, over the sum of the depths: along a crease's flank
 // the way is longer than the depth.
 constexpr float kPushMargin = 8;
-// Allowance for solids that swell or bend while they move, which is not quite affine.
-constexpr float kSwellMargin = 1.5f;
 // Gap of a block and a solid that have not been tested yet.
 constexpr float kUnknown = -1e30f;
 // Blocks handed to a thread at once; smaller skins are not worth waking threads for.
@@ -48,6 +46,8 @@ struct BlockTest {
   // Visits every nearby solid once, moving points out of it at once. Returns the largest depth.
   float visit(bool move) {
     lanes.nearest.fill(1e30f);
+    lanes.clearance.fill(1e30f);
+    lanes.pushed.fill(0.f);
     float deepest = 0;
     for (const std::int32_t s : nearby.first(nearbyCount)) {
       field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
@@ -66,9 +66,17 @@ struct BlockTest {
     for (int pass = 0; pass < passes; ++pass) {
       const float depth = visit(true);
       moved += depth;
-      if (depth < kRetest_m || nearbyCount == 1) break;
+      if (nearbyCount == 1 || !mustRetest()) break;
     }
     return moved;
+  }
+
+  // Whether a point that was pushed out of one solid may have been pushed into another.
+  bool mustRetest() const {
+    bool must = false;
+    for (std::size_t l = 0; l < block.count; ++l)
+      must |= lanes.pushed[l] > kRetest_m && lanes.clearance[l] < lanes.pushed[l];
+    return must;
   }
 
   void readFleshVelocities() {
@@ -82,6 +90,15 @@ struct BlockTest {
     }
   }
 };
+
+constexpr std::size_t kCorners = 8;
+
+Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
+  return {a.x[k], a.y[k], a.z[k]};
+}
+void put(VectorArray& a, std::size_t k, const Eigen::Vector3f& p) {
+  a.x[k] = p.x(), a.y[k] = p.y(), a.z[k] = p.z();
+}
 
 void readBoxes(const Field& field, std::vector<Box>& boxes) {
   boxes.resize(field.solidCount());
@@ -108,11 +125,15 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
     const std::span scratch(nearby_.data() + t * solids, solids);
     const std::size_t end = std::min(blocks_.size(), (t + 1) * kBlocksPerTask);
     for (std::size_t b = t * kBlocksPerTask; b < end; ++b) {
-      float moved = 0;
+      BlockMotion motion;
       const BlockBox box =
-          loadContactLanes(blocks_[b], position, points.fat, lanes, &last_, &moved);
+          loadContactLanes(blocks_[b], position, points.fat, lanes, &last_, &motion);
       const std::span gaps(gaps_.data() + b * solids, solids);
-      for (std::size_t s = 0; s < solids; ++s) gaps[s] -= moved + solidMoved_[s];
+      for (std::size_t s = 0; s < solids; ++s) {
+        // Also what is not a number makes a gap unknown.
+        const float nearer = approach(motion, motions_[s]);
+        gaps[s] = nearer < -kUnknown ? gaps[s] - nearer : kUnknown;
+      }
       BlockTest test{field, blocks_[b], lanes, scratch, gaps};
       float searched = reach_m, pushed = 0;
       bool any = test.findSolids(box, boxes_, searched);
@@ -141,44 +162,68 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
   return total;
 }
 
-// How far the matter of each solid can have moved since the last call, by eight material points
-// around it: motions are affine in them, or nearly so.
+// How much nearer a block and a solid can have come: the difference of their points' ways at the
+// block's centre, and how much the ways differ over the block.
+float FleshContact::approach(const BlockMotion& block, const SolidMotion& solid) {
+  const Eigen::Vector3f center(block.center[0], block.center[1], block.center[2]);
+  const Eigen::Vector3f way(block.way[0], block.way[1], block.way[2]);
+  const Eigen::Vector3f matter = solid.change * (center - solid.origin) + solid.shift;
+  return (way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m;
+}
+
+// The motion of each solid since the last call, from eight material points around it.
 void FleshContact::followSolids(const Field& field) {
-  constexpr std::size_t kCorners = 8;
   const std::size_t solids = boxes_.size();
-  const bool first = solidMoved_.size() != solids;
+  const bool first = motions_.size() != solids;
   if (first) {
-    solidMoved_.assign(solids, 0.f);
+    motions_.resize(solids);
     gaps_.assign(blocks_.size() * solids, kUnknown);
     corners_.resize(solids * kCorners);
     cornersNow_.resize(kCorners);
     cornerMaterial_.resize(solids * kCorners);
+    for (std::size_t k = 0; k < solids * kCorners; ++k) {
+      const SolidId solid(static_cast<std::int64_t>(k / kCorners));
+      const Box& box = boxes_[solid.index()];
+      const Vec3 corner((k & 1 ? box.high : box.low).x(), (k & 2 ? box.high : box.low).y(),
+                        (k & 4 ? box.high : box.low).z());
+      put(cornerMaterial_, k, field.materialFromWorld(solid, corner).cast<float>());
+      put(corners_, k, corner.cast<float>());
+    }
   }
   for (std::size_t s = 0; s < solids; ++s) {
-    const SolidId solid(static_cast<std::int64_t>(s));
-    for (std::size_t c = 0; first && c < kCorners; ++c) {
-      const Vec3 corner((c & 1 ? boxes_[s].high : boxes_[s].low).x(),
-                        (c & 2 ? boxes_[s].high : boxes_[s].low).y(),
-                        (c & 4 ? boxes_[s].high : boxes_[s].low).z());
-      const Eigen::Vector3f material = field.materialFromWorld(solid, corner).cast<float>();
-      cornerMaterial_.x[s * kCorners + c] = material.x();
-      cornerMaterial_.y[s * kCorners + c] = material.y();
-      cornerMaterial_.z[s * kCorners + c] = material.z();
-    }
-    field.worldFromMaterials(solid, view(std::as_const(cornerMaterial_), s * kCorners, kCorners),
+    field.worldFromMaterials(SolidId(static_cast<std::int64_t>(s)),
+                             view(std::as_const(cornerMaterial_), s * kCorners, kCorners),
                              view(cornersNow_, 0, kCorners));
-    float farthest = 0;
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      const std::size_t k = s * kCorners + c;
-      const float x = cornersNow_.x[c] - corners_.x[k], y = cornersNow_.y[c] - corners_.y[k],
-                  z = cornersNow_.z[c] - corners_.z[k];
-      farthest = std::max(farthest, x * x + y * y + z * z);
-      corners_.x[k] = cornersNow_.x[c];
-      corners_.y[k] = cornersNow_.y[c];
-      corners_.z[k] = cornersNow_.z[c];
-    }
-    solidMoved_[s] = kSwellMargin * std::sqrt(farthest);
+    motions_[s] = motionOf(s * kCorners);
+    for (std::size_t c = 0; c < kCorners; ++c) put(corners_, s * kCorners + c, get(cornersNow_, c));
   }
+}
+
+FleshContact::SolidMotion FleshContact::motionOf(std::size_t firstCorner) const {
+  const auto before = [&](std::size_t c) { return get(corners_, firstCorner + c); };
+  SolidMotion m;
+  Eigen::Matrix3f edges, edgesNow;
+  for (int a = 0; a < 3; ++a) {
+    edges.col(a) = before(std::size_t{1} << a) - before(0);
+    edgesNow.col(a) = get(cornersNow_, std::size_t{1} << a) - get(cornersNow_, 0);
+  }
+  const Eigen::Matrix3f map = edgesNow * edges.inverse();
+  m.change = map - Eigen::Matrix3f::Identity();
+  m.origin = before(0);
+  m.shift = get(cornersNow_, 0) - before(0);
+  m.turn = m.change.norm();
+  // Distances change where the map is not rigid, and where the corners do not follow it.
+  const float size = (before(kCorners - 1) - before(0)).norm();
+  m.extra_m = 2 * size * (map.transpose() * map - Eigen::Matrix3f::Identity()).norm();
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Eigen::Vector3f way = m.change * (before(c) - m.origin) + m.shift;
+    m.extra_m += (get(cornersNow_, c) - before(c) - way).norm();
+  }
+  // A box without volume has no map: nothing is known then.
+  if (!std::isfinite(m.turn) || !std::isfinite(m.extra_m)) {
+    m = {Eigen::Matrix3f::Zero(), m.origin, m.shift, 0, -kUnknown};
+  }
+  return m;
 }
 
 float FleshContact::deepest(const Field& field, const PointModel& points,

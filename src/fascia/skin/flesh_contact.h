@@ -21,7 +21,7 @@ class FleshContact {
 
   struct Result {
     float maxCorrection_m = 0;
-    float maxSpeed_m_per_s = 0;
+    float maxSpeed_m_per_s = 0;  // relative to the anchors
   };
 
   // Projects points out of the solids exactly, removes the approaching part of their velocity
@@ -40,7 +40,6 @@ class FleshContact {
  private:
   static constexpr int kPasses = 16;   // more than creases of three solids need
   static constexpr int kSearches = 4;  // each at least twice as wide as the one before
-  void followSolids(const Field& field);
 
   std::vector<PointBlock> blocks_;
   std::vector<Result> results_;
@@ -50,7 +49,17 @@ class FleshContact {
   // What is known from the last call; it saves work and changes no result.
   VectorArray last_;         // positions
   std::vector<float> gaps_;  // blocks x solids: no point of the block is nearer
-  std::vector<float> solidMoved_;
+  // A solid's motion since the last call as an affine map: x goes by change (x − origin) + shift.
+  struct SolidMotion {
+    Eigen::Matrix3f change;
+    Eigen::Vector3f origin, shift;
+    float turn;     // norm of change
+    float extra_m;  // what is not rigid: swelling and bending
+  };
+  static float approach(const BlockMotion& block, const SolidMotion& solid);
+  void followSolids(const Field& field);
+  SolidMotion motionOf(std::size_t firstCorner) const;
+  std::vector<SolidMotion> motions_;
   VectorArray corners_, cornersNow_, cornerMaterial_;  // eight points around each solid
 };
 

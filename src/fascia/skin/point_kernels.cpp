@@ -22,9 +22,8 @@ inline Pointers pointers(const ContactLanes::Lanes3& a) {
 }
 
 BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const FloatArray& fat,
-                  ContactLanes& lanes, VectorArray* last, float* moved) {
+                  ContactLanes& lanes) {
   const D d;
-  V farthest = hn::Zero(d);
   const V big = hn::Set(d, 1e30f);
   V3 low{big, big, big}, high = scaled(hn::Set(d, -1.f), low);
   for (std::size_t l = 0; l < block.count; l += hn::Lanes(d)) {
@@ -36,20 +35,51 @@ BlockBox loadImpl(const PointBlock& block, const VectorArray& position, const Fl
     hn::StoreU(thickness, d, lanes.fat.data() + l);
     const auto used =
         hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));
-    if (last) {
-      const V3 way = r - pointers(*last).at(k);
-      farthest = hn::Max(farthest, hn::IfThenElseZero(used, dot(way, way)));
-      pointers(*last).set(k, r);
-    }
     const V3 around{thickness, thickness, thickness};
     const V3 forLow = select(used, r - around, low), forHigh = select(used, r + around, high);
     low = {hn::Min(low.x, forLow.x), hn::Min(low.y, forLow.y), hn::Min(low.z, forLow.z)};
     high = {hn::Max(high.x, forHigh.x), hn::Max(high.y, forHigh.y), hn::Max(high.z, forHigh.z)};
   }
-  if (moved) *moved = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, farthest)));
   const auto least = [&](V v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
   const auto most = [&](V v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
   return {{least(low.x), least(low.y), least(low.z)}, {most(high.x), most(high.y), most(high.z)}};
+}
+
+void motionImpl(const PointBlock& block, const VectorArray& position, VectorArray& last,
+                BlockMotion& out) {
+  const D d;
+  const V zero = hn::Zero(d);
+  const V3 zero3{zero, zero, zero};
+  const auto used = [&](std::size_t l) HWY_ATTR {
+    return hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));
+  };
+  const Pointers now = pointers(static_cast<const VectorArray&>(position));
+  const MutablePointers before = pointers(last);
+  V3 places = zero3, ways = zero3;
+  for (std::size_t l = 0; l < block.count; l += hn::Lanes(d)) {
+    const V3 r = before.at(block.first + l);
+    places = places + select(used(l), r, zero3);
+    ways = ways + select(used(l), now.at(block.first + l) - r, zero3);
+  }
+  const V share = hn::Set(d, 1.f / static_cast<float>(block.count));
+  const auto mean = [&](V v) HWY_ATTR { return hn::Mul(hn::SumOfLanes(d, v), share); };
+  const V3 center{mean(places.x), mean(places.y), mean(places.z)};
+  const V3 way{mean(ways.x), mean(ways.y), mean(ways.z)};
+  V radius = zero, spread = zero;
+  for (std::size_t l = 0; l < block.count; l += hn::Lanes(d)) {
+    const V3 r = before.at(block.first + l), q = now.at(block.first + l);
+    const V3 fromCenter = r - center, fromWay = (q - r) - way;
+    radius = hn::Max(radius, hn::IfThenElseZero(used(l), dot(fromCenter, fromCenter)));
+    spread = hn::Max(spread, hn::IfThenElseZero(used(l), dot(fromWay, fromWay)));
+    before.set(block.first + l, q);
+  }
+  const V* parts[6] = {&center.x, &center.y, &center.z, &way.x, &way.y, &way.z};
+  for (int a = 0; a < 3; ++a) {
+    out.center[a] = hn::GetLane(*parts[a]);
+    out.way[a] = hn::GetLane(*parts[3 + a]);
+  }
+  out.radius_m = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, radius)));
+  out.spread_m = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, spread)));
 }
 
 float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
@@ -73,7 +103,14 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
       const V slope = hn::Max(hn::NegMulAdd(back, back, hn::Set(d, 1.f)), hn::Set(d, 0.02f));
       const V3 along = mulAdd(hn::Neg(back), before, normal);
       const auto inside = hn::And(used, hn::Gt(depth, hn::Zero(d)));
-      place.set(l, select(inside, mulAdd(hn::Div(depth, slope), along, place.at(l)), place.at(l)));
+      const V way = hn::Div(depth, slope);
+      place.set(l, select(inside, mulAdd(way, along, place.at(l)), place.at(l)));
+      const V pushed = hn::LoadU(d, lanes.pushed.data() + l);
+      const V clearance = hn::LoadU(d, lanes.clearance.data() + l);
+      const auto again = hn::And(inside, hn::Gt(pushed, hn::Zero(d)));
+      const V outsideGap = hn::Min(clearance, hn::IfThenElse(inside, clearance, gap));
+      hn::StoreU(hn::IfThenElse(again, hn::Zero(d), outsideGap), d, lanes.clearance.data() + l);
+      hn::StoreU(hn::Add(pushed, hn::IfThenElseZero(inside, way)), d, lanes.pushed.data() + l);
       push.set(l, select(inside, normal, before));
     }
     const V outside = hn::Max(gap, hn::Zero(d));
@@ -136,7 +173,8 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
       pointers(around.fleshVelocity).set(k, flesh);
       hn::StoreU(hn::IfThenElseZero(touching, offset), d, around.offset.data() + k);
     }
-    fastest = hn::Max(fastest, dot(speed, speed));
+    const V3 relative = select(used, speed - pointers(around.anchorVelocity).at(k), zero3);
+    fastest = hn::Max(fastest, dot(relative, relative));
   }
   return hn::GetLane(hn::MaxOfLanes(d, fastest));
 }
@@ -195,6 +233,7 @@ HWY_AFTER_NAMESPACE();
 namespace fascia {
 
 HWY_EXPORT(loadImpl);
+HWY_EXPORT(motionImpl);
 HWY_EXPORT(absorbImpl);
 HWY_EXPORT(absorbVelocityImpl);
 HWY_EXPORT(finishImpl);
@@ -204,8 +243,9 @@ HWY_EXPORT(brokenImpl);
 
 BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
                           const FloatArray& fat, ContactLanes& lanes, VectorArray* last,
-                          float* moved_m) {
-  return HWY_DYNAMIC_DISPATCH(loadImpl)(block, position, fat, lanes, last, moved_m);
+                          BlockMotion* motion) {
+  if (last) HWY_DYNAMIC_DISPATCH(motionImpl)(block, position, *last, *motion);
+  return HWY_DYNAMIC_DISPATCH(loadImpl)(block, position, fat, lanes);
 }
 
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {

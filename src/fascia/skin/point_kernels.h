@@ -36,6 +36,8 @@ struct ContactLanes {
   alignas(64) Lanes<float> fat;           // distance to keep
   alignas(64) Lanes<float> distance;      // written by Field::evaluate
   alignas(64) Lanes<float> nearest;       // gap between fat and nearest solid so far, ≥ 0
+  alignas(64) Lanes<float> pushed;        // way out of solids in this visit
+  alignas(64) Lanes<float> clearance;     // gap to the other solids; 0 if it was inside of two
   alignas(64) Lanes<float> nearestSolid;  // its number (a float, to blend like the rest)
 };
 
@@ -43,11 +45,18 @@ struct BlockBox {
   float low[3], high[3];
 };
 
-// Loads a block's places and fat; returns the box of the points with their fat around them. Sets
-// `moved_m` to the farthest that a point is from where `last` has it, and updates `last`.
+// How a block's points went since they were last seen.
+struct BlockMotion {
+  float center[3], way[3];  // where they were, and how far they went, on average
+  float radius_m;           // farthest that one was from the centre
+  float spread_m;           // farthest that one's way is from the average
+};
+
+// Loads a block's places and fat; returns the box of the points with their fat around them. With
+// `last`, writes how the block moved since the positions there, and updates them.
 BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
                           const FloatArray& fat, ContactLanes& lanes, VectorArray* last = nullptr,
-                          float* moved_m = nullptr);
+                          BlockMotion* motion = nullptr);
 
 // Takes up the distances and normals to one solid: moves points that are inside out of it (if
 // `move`), keeps the nearest. Returns the smallest gap found, negative = inside. A point that
@@ -59,7 +68,8 @@ float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lan
 void absorbVelocity(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes);
 
 // Writes the result of a block: moved positions, velocities without their approaching part, half
-// spaces. `any` = false: nothing is within reach. Returns the largest squared speed.
+// spaces. `any` = false: nothing is within reach. Returns the largest squared speed
+// relative to the anchors.
 float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,
                     const PointModel& points, const ContactLanes& lanes, VectorArray& position,
                     VectorArray& velocity, PointSurroundings& around);
