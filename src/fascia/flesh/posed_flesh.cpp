@@ -165,8 +165,8 @@ Vec3 PosedFlesh::worldFromMaterial(SolidId solid, const Vec3& material) const {
 void PosedFlesh::worldFromMaterials(SolidId solid, ConstVectors materials, Vectors world) const {
   const Posed& posed = posed_[solid.index()];
   if (!posed.stretched) return Field::worldFromMaterials(solid, materials, world);
-  affinePoints(posed.world.rotation * posed.stretch.asDiagonal(), Vec3::Zero(), posed.world.translation_m,
-         materials, world);
+  affinePoints(posed.world.rotation * posed.stretch.asDiagonal(), Vec3::Zero(),
+               posed.world.translation_m, materials, world);
 }
 
 void Flesh::prepare(PosedFlesh& out) const {
