@@ -168,10 +168,14 @@ def anchor(a, b):
 
 
 def heart(a, b):
-    """1 inside a heart, point towards the hand."""
-    x, y = b / 0.025, a / 0.025 + 0.15
-    f = (x * x + y * y - 1) ** 3 - x * x * y ** 3
-    return smooth(0.05, -0.05, f)
+    """Distance from a heart's outline, negative inside; its point towards the hand."""
+    size = 0.046
+    x, y = abs(b) / size, a / size + 0.55
+    if x + y > 1:
+        return size * (math.hypot(x - 0.25, y - 0.75) - math.sqrt(2) / 4)
+    nearest = max(x + y, 0) / 2
+    d = min(math.hypot(x, y - 1), math.hypot(x - nearest, y - nearest))
+    return size * math.copysign(d, x - y)
 
 
 def color_at(u, v):
@@ -189,16 +193,16 @@ def color_at(u, v):
         painted = front(x, y, color) if 0.25 < u < 0.77 else back(x, y, color)
         color = mix(color, painted, trunk)
     # The arms: furrows between deltoid and biceps, around the elbow's crook.
-    around = (u - 0.60) * 0.56
+    around = (u - 0.62) * 0.5
     dark = 0.4 * groove(side - 0.325 - 0.35 * abs(u - 0.56), 0.012) * groove(u - 0.58, 0.12)
     color = mix(color, SHADE, dark)
-    along = (side - 0.36) * -0.9
+    along = (side - 0.36) * -0.78
     if x > 0:
         color = mix(color, INK, 0.88 * anchor(along, around))
     else:
-        color = mix(color, HEART, 0.85 * heart(along, around))
-        ring = heart(along * 0.82, around * 0.82) - heart(along, around)
-        color = mix(color, INK, 0.85 * max(0.0, ring))
+        d = heart(along, around)
+        color = mix(color, HEART, 0.85 * smooth(0.001, -0.001, d))
+        color = mix(color, INK, 0.85 * smooth(0.0035, 0.0015, abs(d)))
     return color
 
 
