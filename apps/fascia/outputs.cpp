@@ -21,7 +21,7 @@ std::string endingOf(const std::string& path) {
   return ending;
 }
 
-std::function<std::string(const std::string&)> endsIn(std::vector<std::string> endings) {
+std::function<std::string(const std::string&)> endsIn(const std::vector<std::string>& endings) {
   return [endings](const std::string& path) -> std::string {
     if (std::find(endings.begin(), endings.end(), endingOf(path)) != endings.end()) return {};
     return fmt::format("cannot tell the format of '{}': expected a name that ends in {}", path,

@@ -13,7 +13,7 @@ namespace fascia {
 std::string endingOf(const std::string& path);  // ".glb", in lower case
 
 // For CLI11: accepts paths with one of these endings.
-std::function<std::string(const std::string&)> endsIn(std::vector<std::string> endings);
+std::function<std::string(const std::string&)> endsIn(const std::vector<std::string>& endings);
 
 // Throws Error before any long work if a file could not be written where it is wanted. Empty paths
 // are skipped.

@@ -49,6 +49,8 @@ OdeSkin::OdeSkin(const Skin& skin)
     for (std::size_t c = 0; c < 3; ++c) inverseMass_[3 * p + c] = inverse;
   }
   ode_.resize(inverseMass_.size());
+  dampingDirection_.resize(points_.size());
+  dampingPlace_.reserve(inverseMass_.size());
   for (VectorArray* a : {&position_, &velocity_, &force_}) a->resize(skin.layout().storage());
   scratch_.resize(skin.layout());
 }
@@ -85,6 +87,7 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, Flesh
         {around.anchor.x[k], around.anchor.y[k], around.anchor.z[k]},
         {around.anchorVelocity.x[k], around.anchorVelocity.y[k], around.anchorVelocity.z[k]}};
   }
+  dampingPlace_.clear();  // the anchors are others now
   stepper_.resetStats();
   stepper_.advance(*this, ode_, end_s);
   load(ode_.r, state.position);
@@ -117,16 +120,26 @@ void OdeSkin::addPositionForces(double t_s, std::span<const double> r, std::span
   }
 }
 
+void OdeSkin::prepareDamping(double t_s, std::span<const double> r) {
+  if (t_s == dampingTime_s_ && std::ranges::equal(r, dampingPlace_)) return;
+  dampingTime_s_ = t_s;
+  dampingPlace_.assign(r.begin(), r.end());
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const Strand s = strand(p, t_s, r);
+    dampingDirection_[p] = s.squared > 0 ? Vec3(std::sqrt(points_[p].damping / s.squared) * s.way)
+                                         : Vec3(Vec3::Zero());
+  }
+}
+
 void OdeSkin::addVelocityForces(double t_s, std::span<const double> r, std::span<const double> v,
                                 std::span<double> f) {
+  prepareDamping(t_s, r);
   for (std::size_t p = 0; p < points_.size(); ++p) {
-    const Point& point = points_[p];
     const Vec3 speed(v[3 * p], v[3 * p + 1], v[3 * p + 2]);
-    Vec3 force = -point.drag * speed;
-    const Strand s = strand(p, t_s, r);
-    if (s.squared > 0)
-      force -= point.damping * (speed - anchors_[p].velocity).dot(s.way) / s.squared * s.way;
-    for (std::size_t c = 0; c < 3; ++c) f[3 * p + c] += force[static_cast<Eigen::Index>(c)];
+    const Vec3& direction = dampingDirection_[p];
+    const Vec3 force =
+        points_[p].drag * speed + direction.dot(speed - anchors_[p].velocity) * direction;
+    for (std::size_t c = 0; c < 3; ++c) f[3 * p + c] -= force[static_cast<Eigen::Index>(c)];
   }
 }
 

@@ -53,12 +53,18 @@ class OdeSkin final : public SecondOrderSystem {
     return {way, taut ? squared : 0};
   }
   void load(std::span<const double> r, VectorArray& out) const;
+  void prepareDamping(double t_s, std::span<const double> r);
 
   const Skin& skin_;
   AdaptiveStepper stepper_;
   std::vector<double> inverseMass_;
   std::vector<Point> points_;
   std::vector<Anchor> anchors_;
+  // Damping along the strands for the positions below: f −= g (g·(v − v_anchor)). Leapfrog's inner
+  // iteration asks for velocity forces several times at one place.
+  std::vector<Vec3> dampingDirection_;
+  std::vector<double> dampingPlace_;
+  double dampingTime_s_ = 0;
   OdeState ode_;
   VectorArray position_, velocity_, positionBefore_, velocityBefore_, force_;
   SweepScratch scratch_;

@@ -382,6 +382,8 @@ class SkinBuilder {
   }
 
   void applyRegion(const SkinRegionDef& region, const std::string& where) {
+    if (region.solid.empty() && !(region.v_min <= region.v_max))
+      error(where + "/v", "found the larger number first", "only u goes around; v runs upwards");
     std::vector<float> share(skin_.layout_.storage(), 0.f);
     if (!region.solid.empty()) {
       const SolidId solid = findSolid(where + "/solid", region.solid);
