@@ -36,7 +36,8 @@ void fill(GLuint attribute, const Buffer& buffer, const std::vector<T>& values, 
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data(),
                usage);
   glEnableVertexAttribArray(attribute);
-  glVertexAttribPointer(attribute, sizeof(T) / sizeof(float), GL_FLOAT, GL_FALSE, 0, nullptr);
+  constexpr std::size_t kFloatBytes = 4;  // GL_FLOAT
+  glVertexAttribPointer(attribute, sizeof(T) / kFloatBytes, GL_FLOAT, GL_FALSE, 0, nullptr);
 }
 
 }  // namespace
