@@ -23,7 +23,7 @@ Examples:
   fascia bench paper
   fascia bench paper --characters penguin --integrators verlet,auto --seconds 1)";
 
-constexpr int kColumns = 64, kRows = 16;  // 1024 points, as in the paper
+constexpr int kColumns = 32, kRows = 32;  // 1024 points, as in the paper
 
 // What the paper measured: how many times slower than real time, and for leapfrog-Verlet the share
 // of time in forces and in constraints.

@@ -56,9 +56,9 @@ struct Result {
   }
 };
 
-// The paper's grids are four times as wide as high.
+// As many columns as rows, like the examples.
 BuildOptions gridOf(int points, const std::string& integrator) {
-  const int rows = std::max(8, static_cast<int>(std::lround(std::sqrt(points / 4.0))));
+  const int rows = std::max(8, static_cast<int>(std::lround(std::sqrt(points))));
   return {
       .columns = std::max(8, (points + rows / 2) / rows), .rows = rows, .integrator = integrator};
 }
