@@ -85,8 +85,9 @@ class SkinBuilder {
     attach();
     applyEdits();
     makeModel();
-    if (skin_.settings_.integrator == "auto" && skin_.defaultStep_s_ < kFinestStep_s &&
-        skin_.pointCount() >= 2 * kCoarsePoints)
+    // Without strands nothing draws the two grids together again when they drift apart.
+    if (skin_.settings_.integrator == "auto" && def_.tissue.stiffness_N_per_m3 > 0 &&
+        skin_.defaultStep_s_ < kFinestStep_s && skin_.pointCount() >= 2 * kCoarsePoints)
       makeCoarse();
   }
 
