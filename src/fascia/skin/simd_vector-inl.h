@@ -49,17 +49,18 @@ HWY_INLINE V inverseRoot(V a) {
   return hn::Mul(r, hn::NegMulAdd(hn::Mul(hn::Mul(a, r), r), hn::Set(d, 0.5f), hn::Set(d, 1.5f)));
 }
 
+// Indices are signed: one before a row is its pad.
 struct Pointers {
   const float *x, *y, *z;
-  HWY_INLINE V3 at(std::size_t k) const {
+  HWY_INLINE V3 at(std::ptrdiff_t k) const {
     const D d;
     return {hn::LoadU(d, x + k), hn::LoadU(d, y + k), hn::LoadU(d, z + k)};
   }
 };
 struct MutablePointers {
   float *x, *y, *z;
-  HWY_INLINE V3 at(std::size_t k) const { return Pointers{x, y, z}.at(k); }
-  HWY_INLINE void set(std::size_t k, V3 v) const {
+  HWY_INLINE V3 at(std::ptrdiff_t k) const { return Pointers{x, y, z}.at(k); }
+  HWY_INLINE void set(std::ptrdiff_t k, V3 v) const {
     const D d;
     hn::StoreU(v.x, d, x + k), hn::StoreU(v.y, d, y + k), hn::StoreU(v.z, d, z + k);
   }
