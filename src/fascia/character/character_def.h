@@ -1,11 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <fascia/flesh/flesh.h>
 #include <fascia/motion/motion.h>
+#include <fascia/rig/rigged_model.h>
 #include <fascia/skeleton/skeleton.h>
 #include <fascia/skin/skin_def.h>
 
@@ -25,6 +27,14 @@ struct SimulationDef {
   double settle_s = 0.5;  // [0, 60]; simulated before time 0 in the first posture
 };
 
+// An imported, skinned mesh that is the character's skin instead of a grid. Its joints are found by
+// name in the character's skeleton; its motions can be played by name like the character's own.
+struct RigDef {
+  std::string file;  // glTF beside the character file
+  double scale = 1;  // (0, 1e6] of all its lengths
+  std::shared_ptr<const RiggedModel> model;  // read from the file; not saved
+};
+
 // What a *.fascia.json holds and a person edits. Plain values; y is up, metres.
 struct CharacterDef {
   std::string name;
@@ -32,6 +42,7 @@ struct CharacterDef {
   SkeletonDef skeleton;
   FleshDef flesh;
   FleshDef ornaments;  // seen, but not felt by the skin: eyes, beak, claws
+  std::optional<RigDef> rig;
   std::optional<SkinDef> skin;
   std::vector<MotionDef> motions;
   SimulationDef simulation;

@@ -1,0 +1,1 @@
+#include <fascia/baking/skinning_decomposition.h>

@@ -1,0 +1,1 @@
+#include <fascia/fitting/fit_flesh.h>

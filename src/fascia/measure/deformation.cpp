@@ -1,0 +1,1 @@
+#include <fascia/measure/deformation.h>

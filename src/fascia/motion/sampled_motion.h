@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace fascia {
+
+// A motion as frames at a constant rate, the way files and motion capture bring it: for every joint
+// its frame in its parent joint's frame. Knows joint names only.
+struct SampledMotion {
+  std::string name;
+  double rate_hz = 60;
+  bool loop = false;                 // the last frame is followed by the first
+  std::vector<std::string> joints;   // any subset of a figure's joints
+  // frame * joints.size() + joint; at least one frame, all of one length
+  std::vector<Eigen::Quaternionf> rotation;  // unit, neighbours in time in one hemisphere
+  std::vector<Eigen::Vector3f> translation_m;
+
+  std::size_t frameCount() const { return joints.empty() ? 0 : rotation.size() / joints.size(); }
+  double duration_s() const {
+    const auto frames = static_cast<double>(frameCount());
+    return (loop ? frames : frames - 1) / rate_hz;
+  }
+};
+
+}  // namespace fascia
