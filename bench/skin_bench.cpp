@@ -59,10 +59,10 @@ void leapfrogSteps(benchmark::State& state) {
   const SkinState& start = scene.state.skin;
   StepCoefficients coefficients;
   prepareStep(skin.points(), skin.contactResponse(), skin.defaultStep_s(), coefficients);
-  const SweepModel model{&skin.layout(),      &skin.elastic().coefficients(),
-                         &skin.points(),      &coefficients,
-                         &start.surroundings, nullptr,
-                         {0.f, -9.81f, 0.f}};
+  const SweepModel model{
+      &skin.layout(),
+      &skin.elastic().coefficients(),
+      {&skin.points(), &coefficients, &start.surroundings, nullptr, {0.f, -9.81f, 0.f}}};
   GridStepper stepper(skin.layout());
   VectorArray position = start.position, velocity = start.velocity;
   for (auto _ : state) {

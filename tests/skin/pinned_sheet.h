@@ -58,8 +58,8 @@ struct PinnedSheet {
     prepareStep(points, contact, h_s, step);
   }
   SweepModel model() const {
-    SweepModel m{&layout, &elastic.coefficients(), &points, &step, &around, nullptr, {}};
-    for (int a = 0; a < 3; ++a) m.gravity[a] = static_cast<float>(gravity[a]);
+    SweepModel m{&layout, &elastic.coefficients(), {&points, &step, &around, nullptr, {}}};
+    for (int a = 0; a < 3; ++a) m.inputs.gravity[a] = static_cast<float>(gravity[a]);
     return m;
   }
   void run(int steps) { stepper.run(model(), 0, steps, position, velocity); }

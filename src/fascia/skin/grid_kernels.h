@@ -3,7 +3,7 @@
 #include <fascia/base/aligned.h>
 #include <fascia/skin/elastic_grid.h>
 #include <fascia/skin/grid_layout.h>
-#include <fascia/skin/point_model.h>
+#include <fascia/skin/step_inputs.h>
 
 namespace fascia {
 
@@ -26,11 +26,7 @@ void gridForces(const GridLayout& layout, const ElasticGrid::Coefficients& elast
 struct SweepModel {
   const GridLayout* layout;
   const ElasticGrid::Coefficients* elastic;
-  const PointModel* points;
-  const StepCoefficients* step;
-  const PointSurroundings* surroundings;
-  const VectorArray* extraForce;  // N, added to the membrane's; nullptr = none
-  float gravity[3];               // m/s²
+  StepInputs inputs;
 };
 
 // A band of rows being stepped in place: position and velocity of rows [firstStored, …), row-major

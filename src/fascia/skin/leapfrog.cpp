@@ -101,7 +101,7 @@ GridStepper::GridStepper(const GridLayout& layout) : layout_(layout) {
 
 void GridStepper::run(const SweepModel& model, int firstStep, int steps, VectorArray& position,
                       VectorArray& velocity) {
-  const float h = model.step->step_s;
+  const float h = model.inputs.step->step_s;
   if (tiles_.size() == 1) {
     const SweepBand band = bandOf(position, velocity, 0);
     for (int s = 1; s <= steps; ++s)
@@ -129,8 +129,8 @@ void GridStepper::runTile(const SweepModel& model, int firstStep, int steps, Til
   for (int s = 1; s <= steps; ++s) {
     // Every step invalidates one more border row, except at the ends of the grid itself.
     const int begin = first == 0 ? 0 : first + s, end = last == layout_.rows ? last : last - s;
-    sweepRows(model, band, begin, end, static_cast<float>(firstStep + s) * model.step->step_s,
-              tile.scratch);
+    sweepRows(model, band, begin, end,
+              static_cast<float>(firstStep + s) * model.inputs.step->step_s, tile.scratch);
   }
   copyRows(layout_, tile.position, first, nextPosition_, 0, tile.begin, tile.end);
   copyRows(layout_, tile.velocity, first, nextVelocity_, 0, tile.begin, tile.end);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <fascia/base/aligned.h>
-#include <fascia/skin/point_model.h>
+#include <fascia/skin/step_inputs.h>
 #include <fascia/skin/triangle_membrane.h>
 
 namespace fascia {
@@ -10,16 +10,6 @@ namespace fascia {
 
 // Forces (N) of membrane and bending, overwrites `force`.
 void meshForces(const TriangleMembrane& membrane, const VectorArray& position, VectorArray& force);
-
-// What a step of the stabilised leapfrog reads besides the surface's own forces; shared by grids
-// and meshes.
-struct StepInputs {
-  const PointModel* points;
-  const StepCoefficients* step;
-  const PointSurroundings* surroundings;
-  const VectorArray* extraForce;  // N, added to the membrane's; nullptr = none
-  float gravity[3];               // m/s²
-};
 
 // Runs `steps` steps of one interval over the whole mesh, on all cores when it is large; the same
 // bits on any number of threads. firstStep counts from the start of the interval.

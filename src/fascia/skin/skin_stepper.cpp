@@ -199,15 +199,12 @@ int SkinStepper::chooseStep(double duration_s) {
 
 void SkinStepper::leapfrog(int steps, SkinState& state, SkinStats& stats) {
   const bool bends = skin_->bending().active();
-  SweepModel model{&skin_->layout(),
-                   &skin_->elastic().coefficients(),
-                   &skin_->points(),
-                   &coefficients_,
-                   &state.surroundings,
-                   bends ? &extraForce_ : nullptr,
-                   {}};
+  SweepModel model{
+      &skin_->layout(),
+      &skin_->elastic().coefficients(),
+      {&skin_->points(), &coefficients_, &state.surroundings, bends ? &extraForce_ : nullptr, {}}};
   for (int a = 0; a < 3; ++a)
-    model.gravity[a] = static_cast<float>(skin_->settings().gravity_m_per_s2[a]);
+    model.inputs.gravity[a] = static_cast<float>(skin_->settings().gravity_m_per_s2[a]);
   if (bends) {
     for (int s = 0; s < steps; ++s) {
       extraForce_.fill(0.f);

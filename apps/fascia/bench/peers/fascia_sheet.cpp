@@ -135,11 +135,11 @@ class FasciaSheet final : public SheetSolver {
   void advanceFrame() override {
     const SweepModel model{&layout_,
                            &elastic_.coefficients(),
-                           &points_,
-                           &coefficients_,
-                           &around_,
-                           nullptr,
-                           {0, -static_cast<float>(SheetScene::kGravity_m_per_s2), 0}};
+                           {&points_,
+                            &coefficients_,
+                            &around_,
+                            nullptr,
+                            {0, -static_cast<float>(SheetScene::kGravity_m_per_s2), 0}}};
     for (int n = 0; n < kIntervalsPerFrame; ++n) {
       stepper_.run(model, 0, steps_, position_, velocity_);
       time_s_ += kInterval_s;
