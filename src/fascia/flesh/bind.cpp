@@ -1,9 +1,11 @@
 #include <fascia/flesh/bind.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <fascia/base/suggest.h>
 #include <fascia/flesh/names.h>
+#include <fascia/skeleton/euler.h>
 
 namespace fascia {
 namespace {
@@ -73,7 +75,90 @@ void bindTrack(const TrackDef& track, const Skeleton& skeleton, const Flesh& fle
   clip.solids.push_back({solid.value, parameter, KeySpline(track.keys, period_s)});
 }
 
+constexpr Dof kAllDofs[] = {Dof::tx, Dof::ty, Dof::tz, Dof::rx, Dof::ry, Dof::rz};
+
+// Index of the first of a joint's six values; -1 if it has others.
+int firstOfSix(const Skeleton& skeleton, JointId joint) {
+  const int first = skeleton.valueIndex(joint, Dof::tx);
+  for (int i = 0; i < 6; ++i)
+    if (skeleton.valueIndex(joint, kAllDofs[i]) != first + i) return -1;
+  return first;
+}
+
+// A joint's own turn and shift at a time of a sampled motion.
+Transform sampledOwn(const BoundClip& clip, const BoundClip::SampledJoint& joint, double time_s) {
+  return joint.before * sampleJoint(*clip.sampled, joint.sample, time_s) * joint.after;
+}
+
+// Half the time over which rates are measured.
+constexpr double kRateSpan_s = 1.0 / 240;
+
+void sampleFrames(const BoundClip& clip, double time_s, Posture& posture) {
+  const bool still = !clip.loop && (time_s <= 0 || time_s >= clip.duration_s);
+  for (const BoundClip::SampledJoint& joint : clip.sampledJoints) {
+    const Transform now = sampledOwn(clip, joint, time_s);
+    const Vec3 angles = anglesZyx(now.rotation);
+    Vec3 linear = Vec3::Zero(), rates = Vec3::Zero();
+    if (!still) {
+      const Transform before = sampledOwn(clip, joint, time_s - kRateSpan_s);
+      const Transform after = sampledOwn(clip, joint, time_s + kRateSpan_s);
+      linear = (after.translation_m - before.translation_m) / (2 * kRateSpan_s);
+      const Eigen::AngleAxisd turn(Mat3(after.rotation * before.rotation.transpose()));
+      rates = angleRatesZyx(angles, turn.axis() * (turn.angle() / (2 * kRateSpan_s)));
+    }
+    for (int a = 0; a < 3; ++a) {
+      const std::size_t shift = joint.firstValue + static_cast<std::size_t>(a), angle = shift + 3;
+      posture.values[shift] = now.translation_m[a];
+      posture.rates[shift] = linear[a];
+      posture.values[angle] = angles[a];
+      posture.rates[angle] = rates[a];
+    }
+  }
+}
+
 }  // namespace
+
+BoundClip bindSampled(std::shared_ptr<const SampledMotion> motion,
+                      std::span<const SampledFrame> frames, const Skeleton& skeleton,
+                      const std::string& pointer, Diagnostics& diagnostics) {
+  BoundClip clip;
+  clip.name = motion->name;
+  clip.duration_s = motion->duration_s();
+  clip.loop = motion->loop;
+  PosedSkeleton rest;
+  skeleton.pose(skeleton.restPosture(), rest);
+  // From the samples' frame to the skeleton's, in the frame of the former.
+  const auto change = [&](const SampledFrame& frame, JointId joint) {
+    return frame.rest_world.inverse() * rest.joint_world[joint.index()];
+  };
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const JointId joint = resolveJoint(skeleton, frames[i].name, pointer, diagnostics);
+    if (!joint.valid()) continue;
+    const JointId parent = skeleton.parent(joint);
+    const std::string parentName = parent.valid() ? skeleton.joint(parent).name : std::string();
+    const int first = firstOfSix(skeleton, joint);
+    if (first < 0 || parentName != frames[i].parent) {
+      diagnostics.error(pointer,
+                        "the joint " + quoted(frames[i].name) +
+                            (first < 0 ? " lacks some of its six degrees of freedom"
+                                       : " hangs from " + quoted(parentName) +
+                                             ", in the motion from " + quoted(frames[i].parent)),
+                        "imported motions need the rig's own joints; run 'fascia flesh' again");
+      continue;
+    }
+    const JointDef& def = skeleton.joint(joint);
+    Transform before = Transform{rotationZyx(def.orientation_rad), def.offset_m}.inverse();
+    if (parent.valid()) {
+      const auto frame = std::find_if(frames.begin(), frames.end(),
+                                      [&](const SampledFrame& f) { return f.name == parentName; });
+      if (frame != frames.end()) before = before * change(*frame, parent).inverse();
+    }
+    clip.sampledJoints.push_back(
+        {i, static_cast<std::size_t>(first), before, change(frames[i], joint)});
+  }
+  clip.sampled = std::move(motion);
+  return clip;
+}
 
 BoundClip bindMotion(const MotionDef& motion, const Skeleton& skeleton, const Flesh& flesh,
                      const Flesh& ornaments, const std::string& pointer, Diagnostics& diagnostics) {
@@ -102,6 +187,7 @@ void samplePosture(const BoundClip& clip, const Skeleton& skeleton, double time_
     posture.values[static_cast<std::size_t>(track.value)] = sample.value;
     posture.rates[static_cast<std::size_t>(track.value)] = sample.rate;
   }
+  if (clip.sampled) sampleFrames(clip, time_s, posture);
   skeleton.clampToLimits(posture);
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <string>
+#include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <fascia/flesh/flesh.h>
@@ -13,6 +16,19 @@ namespace fascia {
 // for only to say so. Pointers start with `pointer`, e.g. "/motions/0".
 BoundClip bindMotion(const MotionDef& motion, const Skeleton& skeleton, const Flesh& flesh,
                      const Flesh& ornaments, const std::string& pointer, Diagnostics& diagnostics);
+
+// The frames that a sampled motion means by a joint, in the skeleton's rest posture.
+struct SampledFrame {
+  std::string name;
+  std::string parent;  // whose frame the samples are in; empty: the world
+  Transform rest_world;
+};
+
+// A motion that came as frames, for the joints of the skeleton that it names; `frames` has one
+// entry per joint of the motion. A joint must have all six degrees of freedom, in their order.
+BoundClip bindSampled(std::shared_ptr<const SampledMotion> motion,
+                      std::span<const SampledFrame> frames, const Skeleton& skeleton,
+                      const std::string& pointer, Diagnostics& diagnostics);
 
 // The posture at a time: rest where no track says otherwise, within the joints' limits.
 // Allocation-free after the first call with the same `posture`.

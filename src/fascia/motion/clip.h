@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <fascia/motion/motion.h>
+#include <fascia/motion/sampled_motion.h>
 
 namespace fascia {
 
@@ -53,8 +55,17 @@ struct BoundClip {
   std::string name;
   double duration_s = 0;
   bool loop = false;
+  // A joint that a sampled motion moves. The motion's frames may stand otherwise in the joints than
+  // the skeleton's do: local = before · sample · after gives the turn and shift from the rest.
+  struct SampledJoint {
+    std::size_t sample;      // index into SampledMotion::joints
+    std::size_t firstValue;  // tx, ty, tz, rx, ry, rz in Posture::values
+    Transform before, after;
+  };
   std::vector<JointTrack> joints;
   std::vector<SolidTrack> solids;
+  std::shared_ptr<const SampledMotion> sampled;  // may be null
+  std::vector<SampledJoint> sampledJoints;
 };
 
 }  // namespace fascia

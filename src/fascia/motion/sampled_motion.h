@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include <fascia/math/types.h>
+
 namespace fascia {
 
 // A motion as frames at a constant rate, the way files and motion capture bring it: for every joint
@@ -12,8 +14,8 @@ namespace fascia {
 struct SampledMotion {
   std::string name;
   double rate_hz = 60;
-  bool loop = false;                 // the last frame is followed by the first
-  std::vector<std::string> joints;   // any subset of a figure's joints
+  bool loop = false;                // the last frame is followed by the first
+  std::vector<std::string> joints;  // any subset of a figure's joints
   // frame * joints.size() + joint; at least one frame, all of one length
   std::vector<Eigen::Quaternionf> rotation;  // unit, neighbours in time in one hemisphere
   std::vector<Eigen::Vector3f> translation_m;
@@ -24,5 +26,9 @@ struct SampledMotion {
     return (loop ? frames : frames - 1) / rate_hz;
   }
 };
+
+// A joint's frame in its parent's at a time of a motion, interpolated between frames; clamped, or
+// wrapped if the motion loops. `joint` counts within the motion.
+Transform sampleJoint(const SampledMotion& motion, std::size_t joint, double time_s);
 
 }  // namespace fascia

@@ -47,7 +47,7 @@ struct RigMaterial {
 
 // One primitive of the source: runs of vertices and triangles.
 struct RigPart {
-  std::string name;  // the mesh node's
+  std::string name;                          // the mesh node's
   int node = -1, mesh = -1, primitive = -1;  // in the source glTF
   int material = -1;                         // in RiggedModel::materials
   std::uint32_t firstVertex = 0, vertexCount = 0;
@@ -61,7 +61,7 @@ struct RiggedModel {
 
   // The surface that is simulated: points welded by position, triangles without zero area.
   std::vector<Eigen::Vector3f> points_m;
-  std::vector<PointWeights> weights;                   // per point
+  std::vector<PointWeights> weights;                    // per point
   std::vector<std::array<std::uint32_t, 3>> triangles;  // of points, counter-clockwise from outside
   std::vector<std::uint32_t> component;  // per point: number of its connected piece, from 0
   std::uint32_t componentCount = 0;
@@ -86,10 +86,6 @@ struct RiggedModel {
     return box.empty() ? 0 : box.size().norm();
   }
 };
-
-// A joint's frame in its parent's at a time of a motion, interpolated between frames; clamped, or
-// wrapped if the motion loops. `joint` counts within the motion.
-Transform sampleJoint(const SampledMotion& motion, std::size_t joint, double time_s);
 
 // World frames of all joints at a time of one of the model's motions (motion -1: the bind pose).
 void poseRig(const RiggedModel& model, int motion, double time_s, std::vector<Transform>& world);

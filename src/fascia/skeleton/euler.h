@@ -27,4 +27,21 @@ inline Vec3 angularVelocityZyx(const Vec3& angles_rad, const Vec3& rates_rad_per
   return {-sz * y + cz * cy * x, cz * y + sz * cy * x, z - sy * x};
 }
 
+// The angles of a rotation, |y| ≤ 90°.
+inline Vec3 anglesZyx(const Mat3& r) {
+  const double cosine = std::hypot(r(0, 0), r(1, 0));
+  const double y = std::atan2(-r(2, 0), cosine);
+  if (cosine < 1e-9) return {std::atan2(-r(1, 2), r(1, 1)), y, 0};  // x and z turn alike there
+  return {std::atan2(r(2, 1), r(2, 2)), y, std::atan2(r(1, 0), r(0, 0))};
+}
+
+// The rates of these angles at an angular velocity, the inverse of the above; where the angles lose
+// a direction (y = ±90°) the best that finite rates can do.
+inline Vec3 angleRatesZyx(const Vec3& angles_rad, const Vec3& angular_rad_per_s) {
+  Mat3 axes;
+  for (int a = 0; a < 3; ++a) axes.col(a) = angularVelocityZyx(angles_rad, Vec3::Unit(a));
+  const Mat3 damped = axes * axes.transpose() + 1e-6 * Mat3::Identity();
+  return axes.transpose() * damped.inverse() * angular_rad_per_s;
+}
+
 }  // namespace fascia
