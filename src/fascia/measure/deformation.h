@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,21 +10,75 @@
 
 namespace fascia {
 
+// How good a deformation is: every measure is a closed definition that its test checks on a shape
+// with a known answer. Metres; triangles are counter-clockwise seen from outside. Explained for
+// people in docs/deformation.md.
+
 using TriangleList = std::span<const std::array<std::uint32_t, 3>>;
 using PointList = std::span<const Eigen::Vector3f>;
 
-// How good a deformation is; every measure is a closed definition that its test checks on a shape
-// with a known answer. Metres. See docs/deformation.md.
+// --- Crossings (crossings.cpp)
 
-// Pairs of triangles that cross each other without sharing a point.
+// Two triangles that cross, by their numbers; first < second.
+struct CrossingPair {
+  std::uint32_t first, second;
+  friend auto operator<=>(const CrossingPair&, const CrossingPair&) = default;
+};
+
+// All pairs of triangles that share no point and of which an edge of one passes through the inside
+// of the other; increasing. Touching, and overlapping in one plane, is not crossing.
+std::vector<CrossingPair> findCrossings(TriangleList triangles, PointList points);
 std::size_t crossingTrianglePairs(TriangleList triangles, PointList points);
+// How many of `now` are not in `before`; both increasing.
+std::size_t newCrossings(std::span<const CrossingPair> before, std::span<const CrossingPair> now);
 
-// Largest and 99th percentile of edge length over rest length.
+// --- Stretch (edge_stretch.cpp)
+
+// Largest and 99th percentile of edge length over rest length, each edge once. Edges without rest
+// length are left out; 1 where there are no others.
 struct EdgeStretch {
-  double largest, percentile99;
+  double largest = 1, percentile99 = 1;
 };
 EdgeStretch edgeStretch(TriangleList triangles, PointList rest, PointList points);
 
-// Volume enclosed by the surface between a cut on either side of a joint …: see the helper's docs.
+// --- Volume (occupied_volume.cpp)
+
+// The space inside a surface. Open edges are closed by a fan from the middle of each connected run
+// of them, so that a piece cut out of a body has a volume too; wherever such a run moves rigidly,
+// its fan adds nothing to differences.
+struct SurfaceVolume {
+  double counted_m3 = 0;   // by the divergence theorem: overlapping space counts repeatedly
+  double repeated_m3 = 0;  // of that, space counted again (or, < 0, space turned inside out)
+  double occupied_m3() const { return counted_m3 - repeated_m3; }
+};
+SurfaceVolume surfaceVolume(TriangleList triangles, PointList points);
+
+// Share of a joint's volume that a pose loses: what the limb occupies less than at rest, over the
+// rest volume of the part of it that is near the joint. Negative: it gained.
+double jointVolumeLoss(TriangleList limb, TriangleList nearJoint, PointList rest, PointList points);
+
+// --- Motion against the skeleton (skin_motion.cpp)
+
+// Which bone carries each point, and where each bone went: rest → now.
+struct Carriers {
+  std::span<const std::uint32_t> bone;  // per point
+  std::span<const Transform> motion;    // per bone
+};
+
+// How far skin lies from where its bone would carry it, along the surface: the part of the
+// displacement that is perpendicular to the carried rest normal.
+struct SkinSlide {
+  double rms_m = 0, largest_m = 0;
+};
+SkinSlide skinSlide(std::span<const std::uint32_t> which, PointList rest, PointList restNormals,
+                    const Carriers& carriers, PointList points);
+
+// Points as seen from their bones: the carried rest position is the rest position.
+void intoBones(const Carriers& carriers, PointList points, std::vector<Eigen::Vector3f>& seen);
+
+// Root mean square of the third difference in time of points seen from their bones. A vibration of
+// frequency f appears with (2 sin(π f / rate))³ times its amplitude: at 60 frames per second 1 at
+// 10 Hz, 0.009 at 2 Hz, 8 at 30 Hz. 0 with fewer than four frames.
+double jitter_m(std::span<const std::vector<Eigen::Vector3f>> framesInBones);
 
 }  // namespace fascia

@@ -1,1 +1,0 @@
-#include <fascia/measure/deformation.h>
