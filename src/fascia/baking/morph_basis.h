@@ -8,17 +8,17 @@
 namespace fascia {
 
 struct MorphOptions {
-  int targets = 16;              // [1, 256] at most
-  double tolerance_m = 0;        // stop early when the RMS error is below; 0 = use all targets
-  double sparsity = 0.02;        // of the largest displacement: smaller ones become exactly 0
+  int targets = 16;        // [1, 256] at most
+  double tolerance_m = 0;  // stop early when the RMS error is below; 0 = use all targets
+  double sparsity = 0.02;  // of the largest displacement: smaller ones become exactly 0
 };
 
 // A few displacement fields whose weighted sums play back a simulation, on top of the rig's own
 // skinning: displacements are in the bind pose, before the joints move the point.
 struct MorphBasis {
   struct Target {
-    std::vector<std::uint32_t> points;             // increasing; those that it moves
-    std::vector<Eigen::Vector3f> displacement_m;   // of those
+    std::vector<std::uint32_t> points;            // increasing; those that it moves
+    std::vector<Eigen::Vector3f> displacement_m;  // of those
   };
   std::vector<Target> targets;
   std::vector<std::vector<float>> weights;  // frame, target; in [-1, 1]

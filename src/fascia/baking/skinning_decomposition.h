@@ -12,9 +12,9 @@ namespace fascia {
 using PointFrames = std::vector<std::vector<Eigen::Vector3f>>;
 
 struct DecompositionOptions {
-  int helperBones = 20;   // [0, 512] added to the rig's own
-  int influences = 4;     // 4 or 8 per point
-  int iterations = 12;    // of bones against weights
+  int helperBones = 20;  // [0, 512] added to the rig's own
+  int influences = 4;    // 4 or 8 per point
+  int iterations = 12;   // of bones against weights
 };
 
 // Linear blend skinning that plays back a simulation (Le & Deng 2012): the rig's own bones keep
