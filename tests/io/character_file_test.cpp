@@ -42,6 +42,31 @@ TEST(CharacterFile, FullTextComesBackUnchanged) {
   EXPECT_EQ(characterText(readCharacterText(sample::kFull).def), sample::kFull);
 }
 
+TEST(CharacterFile, RigTakesThePlaceOfTheGrid) {
+  const CharacterDef def = readCharacterText(sample::kRigged).def;
+  ASSERT_TRUE(def.rig && def.skin);
+  EXPECT_EQ(def.rig->file, "meshes/fox.glb");
+  EXPECT_EQ(def.rig->scale, 0.01);
+  EXPECT_EQ(def.rig->model, nullptr);  // only files on disk have others beside them
+  EXPECT_EQ(def.skin->material.drag_Ns_per_m3, 2);
+  EXPECT_EQ(characterText(def), sample::kRigged);
+}
+
+TEST(CharacterFile, SkinNeedsEndsOrARig) {
+  const auto bare = faults(replaced(sample::kRigged, "\"rig\"", "\"rag\""));
+  ASSERT_EQ(bare.size(), 3u);
+  EXPECT_EQ(bare[0].where.pointer, "/rag");
+  EXPECT_EQ(bare[1].where.pointer, "/skin");
+  EXPECT_EQ(bare[1].where.line, 7);
+  EXPECT_THAT(bare[1].text(), HasSubstr("\"bottom\" is missing"));
+  EXPECT_THAT(bare[2].text(), HasSubstr("\"top\" is missing"));
+  const auto both =
+      faults(replaced(sample::kRigged, "\"material\"", "\"grid\": [16, 8], \"material\""));
+  ASSERT_EQ(both.size(), 1u);
+  EXPECT_EQ(both[0].where.pointer, "/skin/grid");
+  EXPECT_THAT(both[0].message, HasSubstr("a skin on a rig has no \"grid\""));
+}
+
 TEST(CharacterFile, FullTextIsUnderstood) {
   const CharacterDef def = readCharacterText(sample::kFull).def;
   EXPECT_DOUBLE_EQ(def.skeleton.joints[1].dofs[0].max, radians(120.7));

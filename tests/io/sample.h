@@ -18,6 +18,17 @@ inline const char* const kMinimal = R"({
 }
 )";
 
+// The smallest one whose skin is the mesh of a rig.
+inline const char* const kRigged = R"({
+  "fascia": 1,
+  "name": "fox",
+  "skeleton": [{"name": "root"}],
+  "solids": [{"name": "belly", "joint": "root", "shape": "sphere", "radius_m": 0.2}],
+  "rig": {"file": "meshes/fox.glb", "scale": 0.01},
+  "skin": {"material": {"drag_Ns_per_m3": 2}, "fat": {"thickness_m": 0.004}}
+}
+)";
+
 // Something at almost every key, in the form that we write.
 inline const char* const kFull = R"({
   "fascia": 1,

@@ -43,6 +43,7 @@ TEST(Schema, PublishedFileIsTheOneThatTheReaderMakes) {
 TEST(Schema, AcceptsTheSamples) {
   EXPECT_TRUE(schemaAccepts(sample::kMinimal));
   EXPECT_TRUE(schemaAccepts(sample::kFull));
+  EXPECT_TRUE(schemaAccepts(sample::kRigged));
 }
 
 TEST(Schema, AcceptsEveryExampleThatTheReaderAccepts) {
@@ -52,6 +53,31 @@ TEST(Schema, AcceptsEveryExampleThatTheReaderAccepts) {
     if (!path.ends_with(".fascia.json")) continue;
     EXPECT_NO_THROW(readCharacterFile(path)) << path;
     EXPECT_TRUE(schemaAccepts(readFile(path, 1 << 26))) << path;
+  }
+}
+
+// A skin has ends where it is a grid, and none where it is a rig's mesh.
+TEST(Schema, RefusesSkinsWithoutSurfaceOrWithTwo) {
+  const nlohmann::json grid = nlohmann::json::parse(sample::kMinimal);
+  const nlohmann::json rigged = nlohmann::json::parse(sample::kRigged);
+  std::vector<nlohmann::json> wrong;
+  for (const char* end : {"bottom", "top"}) {
+    wrong.push_back(grid);
+    wrong.back()["skin"].erase(end);
+    wrong.push_back(rigged);
+    wrong.back()["skin"][end] = {{"joint", "root"}};
+  }
+  wrong.push_back(rigged);
+  wrong.back()["skin"]["grid"] = {16, 16};
+  wrong.push_back(rigged);
+  wrong.back().erase("rig");
+  wrong.push_back(rigged);
+  wrong.back()["rig"].erase("file");
+  wrong.push_back(rigged);
+  wrong.back()["rig"]["scale"] = 0;
+  for (const nlohmann::json& document : wrong) {
+    EXPECT_FALSE(sample::faults(document.dump()).empty()) << document;
+    EXPECT_FALSE(schemaAccepts(document.dump())) << document;
   }
 }
 

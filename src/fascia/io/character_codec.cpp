@@ -33,6 +33,64 @@ CodecPtr<SkeletonDef> skeletonCodec() {
                                                                 listOf(jointCodec(), kMaxJoints));
 }
 
+CodecPtr<RigDef> rigCodec() {
+  using Object = ObjectCodec<RigDef>;
+  auto codec = std::make_shared<Object>("A skinned mesh from a file: the skin instead of a grid.");
+  codec
+      ->field("file", &RigDef::file, names(), "glTF or GLB in the folder of this file, or below it",
+              Object::Need::required)
+      .field("scale", &RigDef::scale, numbers(positive(1e6)),
+             "Of all its lengths; 0.01 for a file in centimetres");
+  return codec;
+}
+
+// What a skin holds depends on where its surface comes from: a rig, or a grid between two ends.
+class CharacterCodec final : public ObjectCodec<CharacterDef> {
+ public:
+  using ObjectCodec::ObjectCodec;
+
+  void read(const Json& json, const JsonPath& path, Reading& reading,
+            CharacterDef& def) const override {
+    ObjectCodec::read(json, path, reading, def);
+    const Json* skin = json.find("skin");
+    if (!skin || !skin->is(Json::Kind::object)) return;
+    const JsonPath at = path["skin"];
+    if (json.find("rig")) {
+      for (const char* key : kGridKeys)
+        if (const Json* surplus = skin->find(key))
+          reading.fault(*surplus, at[key], "a skin on a rig has no " + shown(key),
+                        "the rig's mesh is the skin: leave this out, or leave out \"rig\"");
+    } else {
+      for (const char* key : {"bottom", "top"})
+        if (!skin->find(key))
+          reading.fault(*skin, at, "the key " + shown(key) + " is missing",
+                        "where the skin's tube ends; not needed with \"rig\"");
+    }
+  }
+
+  Json schema() const override {
+    Json::List gridKeys;
+    for (const char* key : kGridKeys) gridKeys.push_back(requiring({key}));
+    Json anyGridKey, onRig, onGrid, out = ObjectCodec::schema();
+    anyGridKey.set("not", Json::Object{{"anyOf", std::move(gridKeys)}});
+    onRig = requiring({"rig"});
+    onRig.set("properties", Json::Object{{"skin", std::move(anyGridKey)}});
+    onGrid.set("not", requiring({"rig"}));
+    onGrid.set("properties", Json::Object{{"skin", requiring({"bottom", "top"})}});
+    out.set("anyOf", Json::List{std::move(onRig), std::move(onGrid)});
+    return out;
+  }
+
+ private:
+  static constexpr const char* kGridKeys[] = {"grid", "bottom", "top"};
+
+  static Json requiring(std::initializer_list<const char*> keys) {
+    Json::List list;
+    for (const char* key : keys) list.emplace_back(key);
+    return Json::Object{{"required", std::move(list)}};
+  }
+};
+
 }  // namespace
 
 CodecPtr<SimulationDef> simulationCodec() {
@@ -65,7 +123,7 @@ CodecPtr<SimulationDef> simulationCodec() {
 CodecPtr<CharacterDef> characterCodec() {
   using C = CharacterDef;
   using Object = ObjectCodec<C>;
-  auto codec = std::make_shared<Object>(
+  auto codec = std::make_shared<CharacterCodec>(
       "A layered elastic character: skeleton, flesh, fat, tissue, skin. Metres, kilograms, "
       "seconds; "
       "angles in degrees; y is up.");
@@ -76,6 +134,7 @@ CodecPtr<CharacterDef> characterCodec() {
       .field("solids", &C::flesh, fleshCodec(), "Bones and muscles: what the skin lies on")
       .field("ornaments", &C::ornaments, fleshCodec(),
              "Seen, but not felt by the skin: eyes, beak, claws")
+      .field("rig", &C::rig, optionally(rigCodec()), "")
       .field("skin", &C::skin, optionally(skinCodec()), "")
       .field("motions", &C::motions, listOf(motionCodec(), kMaxListed), "What it can do")
       .field("simulation", &C::simulation, simulationCodec(), "");

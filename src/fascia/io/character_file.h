@@ -17,11 +17,12 @@ struct CharacterFile {
   LineIndex lines;  // gives faults that building finds a file and a line
 };
 
-// Reads a *.fascia.json. Throws Error with every fault at once: file, line, JSON pointer. The
-// texture's presence is checked here; what only building can know (cycles, names) is not.
+// Reads a *.fascia.json, and the rig that it names. Throws Error with every fault at once: file,
+// line, JSON pointer. The texture's presence is checked here; what only building can know (cycles,
+// names) is not.
 CharacterFile readCharacterFile(const std::string& path);
-// The same from memory; `file` is what messages call it. def.folder stays empty, and the texture is
-// not looked for.
+// The same from memory; `file` is what messages call it. def.folder stays empty, and texture and rig
+// are not looked for.
 CharacterFile readCharacterText(std::string_view text, const std::string& file = {});
 
 // Reads and builds: faults of both kinds carry file and line.

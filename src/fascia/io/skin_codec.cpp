@@ -165,10 +165,10 @@ CodecPtr<SkinAnchorDef> anchorCodec() {
 
 class SkinCodec final : public ObjectCodec<SkinDef> {
  public:
-  SkinCodec() : ObjectCodec("The elastic skin: a tube between two joints.") {
+  SkinCodec() : ObjectCodec("The elastic skin: the rig's mesh, or a tube between two joints.") {
     using S = SkinDef;
-    field("bottom", &S::bottom, endCodec(), "The first row", Need::required);
-    field("top", &S::top, endCodec(), "The last row", Need::required);
+    field("bottom", &S::bottom, endCodec(), "The first row; none on a rig");
+    field("top", &S::top, endCodec(), "The last row; none on a rig");
     field("material", &S::material, materialCodec(), "");
     field("fat", &S::fat, fatCodec(), "");
     field("tissue", &S::tissue, tissueCodec(), "");

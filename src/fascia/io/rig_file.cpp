@@ -1,0 +1,32 @@
+#include <fascia/io/rig_file.h>
+
+#include <fascia/io/inside_folder.h>
+#include <fascia/io/rig_import.h>
+
+namespace fascia {
+namespace {
+
+constexpr const char* kPointer = "/rig/file";
+
+}  // namespace
+
+std::shared_ptr<const RiggedModel> loadRig(const CharacterDef& def) {
+  if (!def.rig) return nullptr;
+  const std::string place = insideFolder(def.folder, def.rig->file, "the rig", kPointer);
+  try {
+    return std::make_shared<const RiggedModel>(
+        readRiggedModel(place, RigImportOptions{.scale = def.rig->scale}));
+  } catch (const Error& error) {
+    // Told from the character's file; where in the rig each fault is goes into the message.
+    std::vector<Issue> issues;
+    for (const Issue& fault : error.issues()) {
+      Issue issue;
+      issue.where.pointer = kPointer;
+      issue.message = "the rig " + fault.text();
+      issues.push_back(std::move(issue));
+    }
+    throw Error(std::move(issues));
+  }
+}
+
+}  // namespace fascia
