@@ -10,19 +10,19 @@
 namespace fascia {
 
 struct FitOptions {
-  double fat_share = 0.18;  // (0, 0.9]; thickness of fat over the local radius of the body
-  double least_fat = 0.002; // of the model's height: no solid comes nearer to the surface
+  double fat_share = 0.18;   // (0, 0.9]; thickness of fat over the local radius of the body
+  double least_fat = 0.002;  // of the model's height: no solid comes nearer to the surface
 };
 
 // What the fit did for one joint.
 struct JointFit {
   std::string joint;
-  std::size_t points = 0;       // that it dominates
+  std::size_t points = 0;  // that it dominates
   std::vector<std::string> solids;
-  std::string why;              // where there are none
-  double coverage = 0;          // [0, 1]: share of its points with flesh beneath (along the normal)
-  double residual_rms_m = 0;    // distance of solids' surface to the inset points
-  double deepest_outside_m = 0; // how far a solid comes out of the skin (0 wanted)
+  std::string why;            // where there are none
+  double coverage = 0;        // [0, 1]: share of its points with flesh beneath (along the normal)
+  double residual_rms_m = 0;  // distance of solids' surface to the inset points
+  double deepest_outside_m = 0;  // how far a solid comes out of the skin (0 wanted)
 };
 
 struct FleshFit {

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/fitting/joint_frames.h>
+#include <fascia/fitting/solid_fitting.h>
+
+namespace fascia {
+
+// The piece of the body that one joint moves, as its solids' fit wants it. For joints that have a
+// mirror image the image's skin is included, mirrored: both get the same solids.
+struct BodyPart {
+  std::size_t joint = 0;
+  bool central = false, paired = false;
+  Vec3 axis = Vec3::UnitY();         // along the bone
+  Vec3 across = Vec3::UnitX();       // the solids' y: lateral for parts in the plane of symmetry
+  double area_m2 = 0;                // of the skin that it dominates
+  double usable = 0;                 // share of that which has room for flesh beneath
+  double radius_m = 0;               // median of the local radius where there is room
+  double low_m = 0, high_m = 0;      // where it begins and ends along the axis, from the joint
+  std::vector<SurfaceSample> own;    // dominated, with room beneath
+  std::vector<SurfaceSample> blend;  // shared with neighbours, with room beneath
+  std::vector<Vec3> near;            // the rest of the skin around
+};
+
+BodyPart findBodyPart(const BodySurface& surface, const Symmetry& symmetry, const BoneFrame& frame,
+                      std::size_t joint);
+
+// A target for one solid that fills the whole part, and where to begin.
+SolidTarget wholeTarget(const BodySurface& surface, const BodyPart& part, const BoneFrame& frame);
+FittedSolid wholeGuess(const BodySurface& surface, const BodyPart& part, const BoneFrame& frame);
+
+}  // namespace fascia

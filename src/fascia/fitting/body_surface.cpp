@@ -1,0 +1,208 @@
+#include <fascia/fitting/body_surface.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fascia/base/parallel.h>
+
+namespace fascia {
+namespace {
+
+constexpr double kWantedSamples = 14000;       // over the whole body; the fits' time grows with it
+constexpr std::size_t kMostTriangles = 40000;  // beyond, small ones share samples
+constexpr int kMostSplits = 24;                // of a triangle's edge
+
+// Directions without alignment to anything a modeller would align to.
+const std::array<Vec3, 5>& voters() {
+  static const std::array<Vec3, 5> kDirections = {
+      Vec3(0.36, 0.91, 0.21).normalized(), Vec3(-0.83, 0.11, 0.55).normalized(),
+      Vec3(0.47, -0.72, -0.51).normalized(), Vec3(0.13, 0.29, -0.95).normalized(),
+      Vec3(0.77, 0.19, 0.61).normalized()};
+  return kDirections;
+}
+
+// The four heaviest joints of a weighted mean of three points' influences.
+void mixInfluences(const RiggedModel& model, const std::array<std::uint32_t, 3>& points,
+                   const Vec3& share, SurfaceSample& sample) {
+  std::array<std::pair<double, std::uint16_t>, 3 * PointWeights::kMost> mixed;
+  std::size_t count = 0;
+  for (int c = 0; c < 3; ++c) {
+    const PointWeights& w = model.weights[points[static_cast<std::size_t>(c)]];
+    for (std::size_t i = 0; i < PointWeights::kMost && w.weight[i] > 0; ++i) {
+      const double add = share[c] * static_cast<double>(w.weight[i]);
+      std::size_t k = 0;
+      while (k < count && mixed[k].second != w.joint[i]) ++k;
+      if (k == count) mixed[count++] = {0, w.joint[i]};
+      mixed[k].first += add;
+    }
+  }
+  std::sort(mixed.begin(), mixed.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const auto& a, const auto& b) {
+              return a.first != b.first ? a.first > b.first : a.second < b.second;
+            });
+  for (std::size_t i = 0; i < std::min(count, SurfaceSample::kMostJoints); ++i) {
+    sample.joint[i] = mixed[i].second;
+    sample.weight[i] = mixed[i].first;
+  }
+}
+
+TriangleMesh smoothMesh(const RiggedModel& model) {
+  TriangleMesh mesh{model.points_m, {}, {}, model.triangles};
+  computeNormals(mesh.positions, mesh.triangles, mesh.normals);
+  return mesh;
+}
+
+}  // namespace
+
+BodySurface::BodySurface(const RiggedModel& model, const FitOptions& options)
+    : mesh_(smoothMesh(model)), hierarchy_(mesh_), fatShare_(options.fat_share) {
+  height_m_ = std::max(model.height_m(), 0.1 * model.size_m());
+  size_m_ = model.size_m();
+  leastFat_m_ = options.least_fat * height_m_;
+  for (const auto& t : mesh_.triangles) {
+    const Vec3 a = mesh_.positions[t[0]].cast<double>(), b = mesh_.positions[t[1]].cast<double>(),
+               c = mesh_.positions[t[2]].cast<double>();
+    const Vec3 cross = (b - a).cross(c - a);
+    area_m2_ += 0.5 * cross.norm();
+    faceNormals_.push_back(cross.normalized());
+    component_.push_back(model.component.empty() ? 0 : model.component[t[0]]);
+  }
+  const double spacing_m = std::sqrt(area_m2_ / kWantedSamples);
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) addSamples(model, t, spacing_m);
+  dropHidden();
+  parallelFor(samples_.size(), [&](std::size_t i) { measureThickness(samples_[i]); });
+}
+
+double BodySurface::fat_m(double radius_m) const {
+  return std::max(leastFat_m_, fatShare_ * radius_m);
+}
+
+// Centroids of n² equal pieces. Triangles smaller than a sample's area have one each; if there are
+// very many, one in several.
+void BodySurface::addSamples(const RiggedModel& model, std::uint32_t triangle, double spacing_m) {
+  const auto& corners = mesh_.triangles[triangle];
+  std::array<Vec3, 3> p, n;
+  for (std::size_t c = 0; c < 3; ++c) {
+    p[c] = mesh_.positions[corners[c]].cast<double>();
+    n[c] = mesh_.normals[corners[c]].cast<double>();
+  }
+  const double area_m2 = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
+  const auto stride = static_cast<std::uint32_t>(mesh_.triangles.size() / kMostTriangles + 1);
+  const bool small = area_m2 < spacing_m * spacing_m;
+  if (small && triangle % stride != 0) return;
+  const int splits =
+      std::clamp(static_cast<int>(std::lround(std::sqrt(area_m2) / spacing_m)), 1, kMostSplits);
+  const double piece = 1.0 / splits;
+  for (int i = 0; i < splits; ++i) {
+    for (int j = 0; j < 2 * (splits - i) - 1; ++j) {
+      // Upright pieces at even j, those standing on their heads between them.
+      const double third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+      const double u = (i + third) * piece, v = (j / 2 + third) * piece;
+      const Vec3 share(1 - u - v, u, v);
+      SurfaceSample sample;
+      sample.position_m = share[0] * p[0] + share[1] * p[1] + share[2] * p[2];
+      sample.normal = (share[0] * n[0] + share[1] * n[1] + share[2] * n[2]).normalized();
+      if (!(sample.normal.squaredNorm() > 0.5)) sample.normal = faceNormals_[triangle];
+      sample.area_m2 = area_m2 * piece * piece * (small ? stride : 1);
+      mixInfluences(model, corners, share, sample);
+      samples_.push_back(sample);
+      sampleTriangle_.push_back(triangle);
+    }
+  }
+}
+
+// What lies inside another piece of the surface (eyeballs, teeth) is not the body's outside.
+// Corners are kept if a sample of one of their triangles is.
+void BodySurface::dropHidden() {
+  std::vector<double> areas(1, 0);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const std::uint32_t piece = component_[sampleTriangle_[i]];
+    if (piece >= areas.size()) areas.resize(piece + 1, 0);
+    areas[piece] += samples_[i].area_m2;
+  }
+  const auto largest =
+      static_cast<std::uint32_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
+  std::vector<char> hidden(samples_.size(), 0);
+  parallelFor(samples_.size(), [&](std::size_t i) {
+    const std::uint32_t piece = component_[sampleTriangle_[i]];
+    if (piece != largest) hidden[i] = inside(samples_[i].position_m, piece);
+  });
+  std::size_t kept = 0;
+  std::vector<char> seen(mesh_.positions.size(), 0);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (hidden[i]) continue;
+    samples_[kept++] = samples_[i];
+    for (const std::uint32_t corner : mesh_.triangles[sampleTriangle_[i]]) {
+      if (!seen[corner]) corners_.push_back(mesh_.positions[corner].cast<double>());
+      seen[corner] = 1;
+    }
+  }
+  samples_.resize(kept);
+  sampleTriangle_ = {};
+}
+
+bool BodySurface::inside(const Vec3& p, std::uint32_t except) const {
+  constexpr int kMostHits = 64;
+  int votes = 0;
+  for (const Vec3& direction : voters()) {
+    double t = 0;
+    int surrounding = 0;
+    for (int i = 0; i < kMostHits; ++i) {
+      const auto hit = hierarchy_.firstHit(p + t * direction, direction);
+      if (!hit) break;
+      t += hit->t + 1e-7 * size_m_;
+      if (component_[hit->triangle] == except) continue;
+      surrounding += faceNormals_[hit->triangle].dot(direction) > 0 ? 1 : -1;
+    }
+    votes += surrounding > 0;
+  }
+  return votes >= 3;
+}
+
+double BodySurface::signedDistance(const Vec3& p) const {
+  const auto nearest = hierarchy_.closest(p);
+  if (!nearest) return 1e150;
+  const auto& corners = mesh_.triangles[nearest->triangle];
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  for (std::size_t c = 0; c < 3; ++c) {
+    normal += static_cast<float>(nearest->weights[static_cast<int>(c)]) * mesh_.normals[corners[c]];
+  }
+  const double side = normal.cast<double>().dot(p - nearest->position);
+  return side < 0 ? -nearest->distance_m : nearest->distance_m;
+}
+
+double BodySurface::thickness(const Vec3& p, const Vec3& inward, double limit_m) const {
+  constexpr int kMostHits = 6;
+  double t = 1e-5 * size_m_;
+  for (int i = 0; i < kMostHits; ++i) {
+    const auto hit = hierarchy_.firstHit(p + t * inward, inward, limit_m - t);
+    if (!hit) return 0;
+    t += hit->t;
+    // Only where the ray leaves the body: something hidden inside, it enters first.
+    if (faceNormals_[hit->triangle].dot(inward) > 0) return t;
+    t += 1e-6 * size_m_;
+  }
+  return 0;
+}
+
+// The shape diameter function (Shapira, Shamir & Cohen-Or 2008): the median length of rays in a
+// cone around the inward normal. Ours: a cone of 35° and one ring, for we only want its scale.
+void BodySurface::measureThickness(SurfaceSample& sample) const {
+  constexpr std::size_t kRing = 6;
+  const double cone = radians(35);
+  const Vec3 inward = -sample.normal;
+  const Vec3 side = inward.unitOrthogonal(), up = inward.cross(side);
+  std::array<double, kRing + 1> lengths{};
+  lengths[kRing] = thickness(sample.position_m, inward, size_m_);
+  for (std::size_t i = 0; i < kRing; ++i) {
+    const double turn = 2 * kPi * static_cast<double>(i) / kRing;
+    const Vec3 ray =
+        std::cos(cone) * inward + std::sin(cone) * (std::cos(turn) * side + std::sin(turn) * up);
+    lengths[i] = std::cos(cone) * thickness(sample.position_m, ray, size_m_);
+  }
+  std::sort(lengths.begin(), lengths.end());
+  sample.radius_m = 0.5 * lengths[kRing / 2];
+  sample.fat_m = fat_m(sample.radius_m);
+}
+
+}  // namespace fascia
