@@ -19,8 +19,9 @@ struct PointStep {
   const StepInputs& m;
   float time_s;
 
-  HWY_INLINE void operator()(std::size_t k, V3 force, const MutablePointers& r,
-                             const MutablePointers& v, std::size_t local) const {
+  // Returns the new position.
+  HWY_INLINE V3 operator()(std::size_t k, V3 force, const MutablePointers& r,
+                           const MutablePointers& v, std::size_t local) const {
     const D d;
     const PointModel& p = *m.points;
     const StepCoefficients& s = *m.step;
@@ -68,6 +69,7 @@ struct PointStep {
     }
     r.set(local, position);
     v.set(local, velocity);
+    return position;
   }
 };
 

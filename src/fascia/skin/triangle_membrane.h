@@ -22,32 +22,50 @@ struct TriangleMaterial {
   float max_stretch = 1.4f;                // stress plateau, as ElasticGrid's
 };
 
-// The elastic membrane of spec L4 on a triangle mesh: orthotropic St. Venant–Kirchhoff, E = ½(G −
-// G0) per triangle with the rest shape as metric, written in the three squared edge lengths, in
-// which E is linear:
+// The elastic membrane of spec L4 on a triangle mesh: orthotropic St. Venant–Kirchhoff with the
+// rest shape as metric. x_u and x_v, the images of the material's unit vectors u and v ⟂ u, are
+// linear in a triangle's corners, and with E = ½(G − G0), G their dot products,
 //
-//   ε = Σ_triangles ½ dᵀ C d,   d_k = |e_k|² − G_k,   force along edge k: ∝ (C d)_k e_k
+//   ε = Σ_triangles A · ½ [K_u E_uu² + K_v E_vv² + S (2 E_uv)²],   isotropic where K_u = K_v = 2 S.
 //
-// and hinge bending across edges with two triangles. The force is exactly −∂ε/∂r of this energy up
-// to max_stretch, beyond which the stress stays constant (see ElasticGrid).
+// Small strains cost the same as on ElasticGrid. The force is exactly −∂ε/∂r. As on the grid, each
+// of the three stresses stays constant where its strain is beyond what max_stretch gives.
 class TriangleMembrane {
  public:
+  using Corners = std::array<std::uint32_t, 3>;
+
   TriangleMembrane() = default;
-  // `triangles` are storage indices into `rest`; points without triangles are allowed.
-  TriangleMembrane(std::span<const std::array<std::uint32_t, 3>> triangles, const VectorArray& rest,
+  // `triangles` are storage indices into `rest`; points without triangles are allowed. Triangles
+  // without area get no stiffness.
+  TriangleMembrane(std::span<const Corners> triangles, const VectorArray& rest,
                    const TriangleMaterial& material);
 
   std::size_t storage() const { return bound_.size(); }
   double energy(const VectorArray& position) const;  // joule
+  // Adds the force Jacobian ∂f/∂r (negative semi-definite part only when `definite`): row and
+  // column 3k+c for storage index k.
   void addForceJacobian(const VectorArray& position, bool definite,
                         std::vector<Eigen::Triplet<double>>& entries) const;
-  // Bound of the row sums of |−∂f/∂r| for every posture within max_stretch, N/m; bending included.
+  // K with −∂f/∂r ≼ diag(K) for every posture within max_stretch, N/m: what explicit steps must
+  // resolve.
   const FloatArray& stiffnessBound() const { return bound_; }
-  double maxStretch(const VectorArray& position) const;  // edge length over rest length
+  double maxStretch(const VectorArray& position) const;    // edge length over rest length
   const FloatArray& pointAreas() const { return areas_; }  // rest area of each point, m²
 
+  struct Triangle {
+    Corners corners;
+    // x_u = u[0] e1 + u[1] e2 and x_v likewise, e1 and e2 from corner 0 to corners 1 and 2; 1/m.
+    float u[2], v[2];
+    float stretch_u, stretch_v, shear;  // rest area × stiffness, Nm
+    float inverseRest[3];  // 1/m² per squared length of the edges 01, 02 and 12 in the rest shape
+  };
+  const std::vector<Triangle>& triangles() const { return triangles_; }  // those with stiffness
+  float cap() const { return cap_; }  // plateau of |x_u|² − 1: max_stretch² − 1
+
  private:
+  std::vector<Triangle> triangles_;
   FloatArray bound_, areas_;
+  float cap_ = 1;
 };
 
 }  // namespace fascia

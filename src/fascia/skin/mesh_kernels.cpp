@@ -1,0 +1,176 @@
+#include <fascia/skin/mesh_kernels.h>
+
+#include <algorithm>
+
+#include <fascia/base/parallel.h>
+
+// SSSE3 and AVX3_DL add code, not speed, here.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fascia/skin/mesh_kernels.cpp"
+#include <hwy/foreach_target.h>
+
+#include <fascia/skin/point_step-inl.h>
+#include <fascia/skin/quads-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace fascia {
+namespace HWY_NAMESPACE {
+
+constexpr std::size_t kBatch = MeshLayout::kBatch;
+
+std::size_t lanesImpl() {
+  return hn::Lanes(D());
+}
+
+// Forces on the corners of the chunk's triangles, to scratch. Formulas at TriangleMembrane; with
+// t = |x|² − 1 = 2E the stress along x is (K/2) t x.
+HWY_INLINE void triangleForces(const MeshLayout& layout, const MeshLayout::Chunk& chunk,
+                               const float* quads, float* scratch) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const V cap = hn::Set(d, layout.cap), one = hn::Set(d, 1.f);
+  const std::uint32_t* corners = layout.corners.data() + std::size_t{chunk.firstBatch} * 3 * kBatch;
+  const float* coefficients = layout.coefficients.data() +
+                              std::size_t{chunk.firstBatch} * MeshLayout::kTriangleFloats * kBatch;
+  float* out = scratch + MeshLayout::kScratchHead;
+  for (std::size_t b = 0; b < chunk.batchCount; ++b) {
+    for (std::size_t l = 0; l < kBatch; l += lanes) {
+      const auto load = [&](std::size_t q)
+                            HWY_ATTR { return hn::Load(d, coefficients + q * kBatch + l); };
+      const V3 origin = loadQuads(quads, corners + l);
+      const V3 e1 = loadQuads(quads, corners + kBatch + l) - origin;
+      const V3 e2 = loadQuads(quads, corners + 2 * kBatch + l) - origin;
+      const V u1 = load(0), u2 = load(1), v1 = load(2), v2 = load(3);
+      const V3 xu = mulAdd(u1, e1, scaled(u2, e2)), xv = mulAdd(v1, e1, scaled(v2, e2));
+      const V su = hn::Mul(load(4), clampAbs(hn::Sub(dot(xu, xu), one), cap));
+      const V sv = hn::Mul(load(5), clampAbs(hn::Sub(dot(xv, xv), one), cap));
+      const V shear = hn::Mul(load(6), clampAbs(dot(xu, xv), cap));
+      const V3 pu = mulAdd(su, xu, scaled(shear, xv)), pv = mulAdd(sv, xv, scaled(shear, xu));
+      const V3 pull1 = mulAdd(u1, pu, scaled(v1, pv)), pull2 = mulAdd(u2, pu, scaled(v2, pv));
+      const V minus = hn::Set(d, -1.f);
+      storeQuads(pull1 + pull2, out + l * MeshLayout::kQuad);
+      storeQuads(scaled(minus, pull1), out + (kBatch + l) * MeshLayout::kQuad);
+      storeQuads(scaled(minus, pull2), out + (2 * kBatch + l) * MeshLayout::kQuad);
+    }
+    corners += 3 * kBatch;
+    coefficients += MeshLayout::kTriangleFloats * kBatch;
+    out += 3 * kBatch * MeshLayout::kQuad;
+  }
+}
+
+// Calls apply(k, force) for every vector of the chunk's points k….
+template <class Apply>
+HWY_INLINE void forEachForce(const MeshLayout& layout, const MeshLayout::Chunk& chunk,
+                             const float* scratch, const Apply& apply) {
+  // Sums are read back some slices later, when the stores have reached the cache: a vector load
+  // does not wait for narrower stores kindly.
+  constexpr std::size_t kGroup = 4 * kBatch;
+  alignas(64) float sums[kGroup * MeshLayout::kQuad];
+  const D d;
+  const std::size_t end = chunk.firstPoint + chunk.pointCount;
+  for (std::size_t group = chunk.firstPoint; group < end; group += kGroup) {
+    const std::size_t stop = std::min(group + kGroup, end);
+    for (std::size_t k = group; k < stop; k += kBatch) {
+      const std::uint32_t first = layout.sliceFirst[k / kBatch];
+      const std::size_t count = (layout.sliceFirst[k / kBatch + 1] - first) / kBatch;
+      const std::uint32_t* places = layout.places.data() + first;
+      float* slice = sums + (k - group) * MeshLayout::kQuad;
+      for (std::size_t p = 0; p < kBatch; ++p, places += count)
+        sumQuads(scratch, places, count, slice + layout.quadOffset(p));
+    }
+    for (std::size_t k = group; k < stop; k += hn::Lanes(d))
+      apply(k, loadQuads(sums + (k - group) * MeshLayout::kQuad));
+  }
+}
+
+void toQuadsImpl(const VectorArray& position, std::size_t count, float* quads) {
+  for (std::size_t k = 0; k < count; k += hn::Lanes(D()))
+    storeQuads(pointers(position).at(k), quads + k * MeshLayout::kQuad);
+}
+
+void stepChunkImpl(const MeshLayout& layout, const MeshLayout::Chunk& chunk,
+                   const StepInputs& inputs, float time_s, const float* quads, float* nextQuads,
+                   float* scratch, VectorArray& position, VectorArray& velocity) {
+  triangleForces(layout, chunk, quads, scratch);
+  const PointStep step{inputs, time_s};
+  const MutablePointers r = pointers(position), v = pointers(velocity);
+  forEachForce(layout, chunk, scratch, [&](std::size_t k, V3 force) HWY_ATTR {
+    storeQuads(step(k, force, r, v, k), nextQuads + k * MeshLayout::kQuad);
+  });
+}
+
+void chunkForcesImpl(const MeshLayout& layout, const MeshLayout::Chunk& chunk, const float* quads,
+                     float* scratch, VectorArray& force) {
+  triangleForces(layout, chunk, quads, scratch);
+  const MutablePointers out = pointers(force);
+  forEachForce(layout, chunk, scratch, [&](std::size_t k, V3 f) HWY_ATTR { out.set(k, f); });
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace fascia
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fascia {
+
+HWY_EXPORT(lanesImpl);
+HWY_EXPORT(toQuadsImpl);
+HWY_EXPORT(stepChunkImpl);
+HWY_EXPORT(chunkForcesImpl);
+
+namespace {
+
+// Below this many points waking threads costs more than they save.
+constexpr std::size_t kParallelPoints = 4096;
+
+}  // namespace
+
+MeshStepper::MeshStepper(const TriangleMembrane& membrane)
+    : layout_(membrane, HWY_DYNAMIC_DISPATCH(lanesImpl)()),
+      quads_(layout_.pointCount * MeshLayout::kQuad),
+      nextQuads_(quads_.size()) {
+  const auto threads = static_cast<std::size_t>(hardwareThreads());
+  const bool parallel = layout_.pointCount >= kParallelPoints;
+  scratch_.resize(parallel ? std::min(threads, layout_.chunks.size()) : 1);
+  for (FloatArray& scratch : scratch_) scratch.resize(layout_.scratchFloats);
+}
+
+// Each task has its own scratch and runs over its share of the chunks; which task computes a chunk
+// makes no difference to the result.
+template <class Task>
+void MeshStepper::forEachChunk(const Task& task) {
+  const std::size_t chunks = layout_.chunks.size(), tasks = scratch_.size();
+  parallelFor(tasks, [&](std::size_t t) {
+    for (std::size_t c = chunks * t / tasks; c < chunks * (t + 1) / tasks; ++c)
+      task(layout_.chunks[c], scratch_[t].data());
+  });
+}
+
+void MeshStepper::run(const StepInputs& inputs, int firstStep, int steps, VectorArray& position,
+                      VectorArray& velocity) {
+  HWY_DYNAMIC_DISPATCH(toQuadsImpl)(position, layout_.pointCount, quads_.data());
+  for (int s = 1; s <= steps; ++s) {
+    const float time_s = static_cast<float>(firstStep + s) * inputs.step->step_s;
+    forEachChunk([&](const MeshLayout::Chunk& chunk, float* scratch) {
+      HWY_DYNAMIC_DISPATCH(stepChunkImpl)
+      (layout_, chunk, inputs, time_s, quads_.data(), nextQuads_.data(), scratch, position,
+       velocity);
+    });
+    std::swap(quads_, nextQuads_);
+  }
+}
+
+void MeshStepper::forces(const VectorArray& position, VectorArray& force) {
+  HWY_DYNAMIC_DISPATCH(toQuadsImpl)(position, layout_.pointCount, quads_.data());
+  forEachChunk([&](const MeshLayout::Chunk& chunk, float* scratch) {
+    HWY_DYNAMIC_DISPATCH(chunkForcesImpl)(layout_, chunk, quads_.data(), scratch, force);
+  });
+}
+
+void meshForces(const TriangleMembrane& membrane, const VectorArray& position, VectorArray& force) {
+  MeshStepper(membrane).forces(position, force);
+}
+
+}  // namespace fascia
+#endif

@@ -1,0 +1,203 @@
+#include <fascia/skin/triangle_membrane.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fascia {
+namespace {
+
+using Triangle = TriangleMembrane::Triangle;
+
+// Triangles flatter than this share of their longest edge have no direction to hold on to.
+constexpr double kFlattest = 1e-5;
+// A sliver's stiffness against its own height grows with length over height. It would ask for short
+// steps of the whole skin, so it grows no further than at this height over length.
+constexpr double kSliver = 0.1;
+
+Vec3 pointAt(const VectorArray& a, std::size_t k) {
+  return {a.x[k], a.y[k], a.z[k]};
+}
+
+// Stress and energy of a strain that stops counting at the plateau.
+double plateauStress(double t, double limit) {
+  return std::clamp(t, -limit, limit);
+}
+double plateauEnergy(double t, double limit) {
+  const double s = std::abs(t);
+  return s <= limit ? 0.5 * s * s : limit * s - 0.5 * limit * limit;
+}
+
+// x_u = Σ u[i] r_i, x_v = Σ v[i] r_i over a triangle's corners.
+struct Gradients {
+  double u[3], v[3];
+  explicit Gradients(const Triangle& t)
+      : u{-double{t.u[0]} - t.u[1], t.u[0], t.u[1]}, v{-double{t.v[0]} - t.v[1], t.v[0], t.v[1]} {}
+};
+
+struct Stretch {
+  Vec3 u, v;  // x_u, x_v
+  Stretch(const Triangle& t, const VectorArray& r) {
+    const Vec3 origin = pointAt(r, t.corners[0]);
+    const Vec3 e1 = pointAt(r, t.corners[1]) - origin, e2 = pointAt(r, t.corners[2]) - origin;
+    u = double{t.u[0]} * e1 + double{t.u[1]} * e2;
+    v = double{t.v[0]} * e1 + double{t.v[1]} * e2;
+  }
+  double strain_u() const { return 0.5 * (u.squaredNorm() - 1); }
+  double strain_v() const { return 0.5 * (v.squaredNorm() - 1); }
+  double shear() const { return u.dot(v); }
+};
+
+// The material's direction u in the triangle's plane.
+Vec3 directionInPlane(const Vec3& wanted, const Vec3& normal, const Vec3& edge) {
+  const Vec3 u = wanted - wanted.dot(normal) * normal;
+  return u.norm() > 1e-3 * wanted.norm() ? u.normalized() : edge.normalized();
+}
+
+// Spectral norm of a 2x2 matrix.
+double norm(const Eigen::Matrix2d& m) {
+  const double squares = m.squaredNorm(), area = m.determinant();
+  return std::sqrt(0.5 * (squares + std::sqrt(std::max(0.0, squares * squares - 4 * area * area))));
+}
+
+// Row sums of the norms of the 3x3 blocks of a triangle's −∂f/∂r where both directions are
+// stretched to the plateau, `cosine` between them: block Gershgorin, J ≼ diag(sums).
+std::array<double, 3> rowSums(const Triangle& t, double cap, double cosine) {
+  const Gradients g(t);
+  const double stretch = std::sqrt(1 + cap), shear = (1 + cap) * cosine;
+  const Eigen::Vector2d xu(stretch, 0);
+  const Eigen::Vector2d xv(stretch * cosine, stretch * std::sqrt(1 - cosine * cosine));
+  const double shearStress = t.shear * plateauStress(shear, cap);
+  const double shearStiffness = std::abs(shear) <= cap ? t.shear : 0;
+  std::array<double, 3> sums{};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double uu = t.stretch_u * g.u[i] * g.u[j], vv = t.stretch_v * g.v[i] * g.v[j];
+      const double across =
+          0.5 * cap * (uu + vv) + shearStress * (g.u[i] * g.v[j] + g.v[i] * g.u[j]);
+      const Eigen::Matrix2d inPlane =
+          across * Eigen::Matrix2d::Identity() + uu * xu * xu.transpose() +
+          vv * xv * xv.transpose() +
+          shearStiffness * (g.u[i] * xv + g.v[i] * xu) * (g.u[j] * xv + g.v[j] * xu).transpose();
+      sums[static_cast<std::size_t>(i)] += std::max(norm(inPlane), std::abs(across));
+    }
+  }
+  return sums;
+}
+
+// The largest row sums over all angles between x_u and x_v. They are at both ends of the range
+// where shear is elastic, or where the directions fall onto each other.
+std::array<double, 3> stiffnessOf(const Triangle& t, double cap) {
+  const double plateau = cap / (1 + cap) * (1 - 1e-9);
+  std::array<double, 3> largest{};
+  for (const double cosine : {0.0, plateau, -plateau, 1.0, -1.0}) {
+    const std::array<double, 3> sums = rowSums(t, cap, cosine);
+    for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], sums[i]);
+  }
+  return largest;
+}
+
+}  // namespace
+
+TriangleMembrane::TriangleMembrane(std::span<const Corners> triangles, const VectorArray& rest,
+                                   const TriangleMaterial& m)
+    : bound_(rest.size(), 0.f), areas_(rest.size(), 0.f), cap_(m.max_stretch * m.max_stretch - 1) {
+  triangles_.reserve(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Corners& c = triangles[i];
+    const Vec3 origin = pointAt(rest, c[0]);
+    const Vec3 e1 = pointAt(rest, c[1]) - origin, e2 = pointAt(rest, c[2]) - origin;
+    const Vec3 cross = e1.cross(e2);
+    const double lengths[3] = {e1.squaredNorm(), e2.squaredNorm(), (e2 - e1).squaredNorm()};
+    const double longest = *std::max_element(lengths, lengths + 3);
+    const double flatness = cross.norm() / longest;  // height over longest edge
+    if (!(flatness > kFlattest) || longest < 1e-12) continue;
+    const double area = 0.5 * cross.norm();
+    const auto mean = [&](const FloatArray& a) { return (a[c[0]] + a[c[1]] + a[c[2]]) / 3.0; };
+    const Vec3 normal = cross.normalized();
+    const Vec3 u =
+        m.u.empty() ? e1.normalized() : directionInPlane(m.u[i].cast<double>(), normal, e1);
+    const Vec3 v = normal.cross(u);
+    const double relaxed = 1 / mean(m.prestretch);
+    const double determinant = 2 * area * relaxed;  // of (e1 e2) in u and v, over one relaxation
+    Triangle t{};
+    t.corners = c;
+    t.u[0] = static_cast<float>(e2.dot(v) / determinant);
+    t.u[1] = static_cast<float>(-e1.dot(v) / determinant);
+    t.v[0] = static_cast<float>(-e2.dot(u) / determinant);
+    t.v[1] = static_cast<float>(e1.dot(u) / determinant);
+    const double weight = area * std::min(1.0, flatness / kSliver);
+    t.stretch_u = static_cast<float>(weight * mean(m.stretch_u));
+    t.stretch_v = static_cast<float>(weight * mean(m.stretch_v));
+    t.shear = static_cast<float>(weight * mean(m.shear));
+    for (int k = 0; k < 3; ++k)
+      t.inverseRest[k] = static_cast<float>(1 / std::max(lengths[k], 1e-6 * longest));
+    const std::array<double, 3> stiffness = stiffnessOf(t, cap_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      areas_[c[k]] += static_cast<float>(area / 3);
+      bound_[c[k]] += static_cast<float>(stiffness[k]);
+    }
+    triangles_.push_back(t);
+  }
+}
+
+double TriangleMembrane::energy(const VectorArray& r) const {
+  double total = 0;
+  for (const Triangle& t : triangles_) {
+    const Stretch s(t, r);
+    total += t.stretch_u * plateauEnergy(s.strain_u(), 0.5 * cap_) +
+             t.stretch_v * plateauEnergy(s.strain_v(), 0.5 * cap_) +
+             t.shear * plateauEnergy(s.shear(), cap_);
+  }
+  return total;
+}
+
+double TriangleMembrane::maxStretch(const VectorArray& r) const {
+  float largest = 0;
+  for (const Triangle& t : triangles_) {
+    const auto ratio = [&](int from, int to, float inverseRest) {
+      const std::size_t a = t.corners[static_cast<std::size_t>(from)];
+      const std::size_t b = t.corners[static_cast<std::size_t>(to)];
+      const float x = r.x[b] - r.x[a], y = r.y[b] - r.y[a], z = r.z[b] - r.z[a];
+      return (x * x + y * y + z * z) * inverseRest;
+    };
+    largest = std::max({largest, ratio(0, 1, t.inverseRest[0]), ratio(0, 2, t.inverseRest[1]),
+                        ratio(1, 2, t.inverseRest[2])});
+  }
+  return std::sqrt(double{largest});
+}
+
+void TriangleMembrane::addForceJacobian(const VectorArray& r, bool definite,
+                                        std::vector<Eigen::Triplet<double>>& entries) const {
+  for (const Triangle& t : triangles_) {
+    const Gradients g(t);
+    const Stretch s(t, r);
+    // Hessian of w φ(E_uu) with E_uu = ½(|x_u|² − 1): u_i u_j w (φ'' x_u x_uᵀ + φ' I).
+    const auto along = [&](double weight, double strain, const Vec3& x) {
+      double stress = plateauStress(strain, 0.5 * cap_);
+      if (definite) stress = std::max(stress, 0.0);
+      Mat3 h = stress * Mat3::Identity();
+      if (std::abs(strain) < 0.5 * cap_) h += x * x.transpose();
+      return Mat3(weight * h);
+    };
+    const Mat3 hu = along(t.stretch_u, s.strain_u(), s.u);
+    const Mat3 hv = along(t.stretch_v, s.strain_v(), s.v);
+    const double stress = definite ? 0 : t.shear * plateauStress(s.shear(), cap_);
+    const double stiffness = std::abs(s.shear()) < cap_ ? t.shear : 0;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 gi = g.u[i] * s.v + g.v[i] * s.u;
+      for (int j = 0; j < 3; ++j) {
+        const Vec3 gj = g.u[j] * s.v + g.v[j] * s.u;
+        const Mat3 h = g.u[i] * g.u[j] * hu + g.v[i] * g.v[j] * hv +
+                       stiffness * gi * gj.transpose() +
+                       stress * (g.u[i] * g.v[j] + g.v[i] * g.u[j]) * Mat3::Identity();
+        const int row = 3 * static_cast<int>(t.corners[static_cast<std::size_t>(i)]);
+        const int column = 3 * static_cast<int>(t.corners[static_cast<std::size_t>(j)]);
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) entries.emplace_back(row + a, column + b, -h(a, b));
+      }
+    }
+  }
+}
+
+}  // namespace fascia
