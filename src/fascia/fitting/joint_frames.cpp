@@ -32,18 +32,16 @@ std::vector<Dominion> findDominions(const RiggedModel& model, const BodySurface&
 }
 
 // Picks the child that the joint's flesh leads to: the best aligned with the centre of its points.
+// A joint in the plane of symmetry leads to none of a pair.
 int mainChild(const RiggedModel& model, const Symmetry& symmetry,
               const std::vector<std::vector<std::size_t>>& children, const Dominion& dominion,
               double least_m, std::size_t joint) {
   const Vec3 origin = model.joints[joint].rest_world.translation_m;
-  const bool preferCentral =
-      symmetry.central(joint) && std::any_of(children[joint].begin(), children[joint].end(),
-                                             [&](std::size_t c) { return symmetry.central(c); });
   int best = -1;
   double highest = -2;
   for (const std::size_t child : children[joint]) {
     const Vec3 bone = model.joints[child].rest_world.translation_m - origin;
-    if (bone.norm() < least_m || (preferCentral && !symmetry.central(child))) continue;
+    if (bone.norm() < least_m || (symmetry.central(joint) && !symmetry.central(child))) continue;
     double score = bone.norm() * 1e-6;  // without points: the longest
     if (dominion.area_m2 > 0)
       score = bone.normalized().dot((dominion.centre_m() - origin).normalized());
@@ -153,6 +151,39 @@ Transform frameOf(const Vec3& origin, const Vec3& x, const Vec3& y) {
   return frame;
 }
 
+// Where the bone points: to the main child, or else to the middle of the joint's points, or on as
+// its parent does.
+Vec3 boneDirection(const RiggedModel& model, const Symmetry& symmetry,
+                   const std::vector<BoneFrame>& frames, const Dominion& own, double least_m,
+                   std::size_t joint) {
+  const BoneFrame& frame = frames[joint];
+  const Vec3& origin = frame.world.translation_m;
+  const int parent = model.joints[joint].parent;
+  Vec3 bone = Vec3::UnitY();
+  if (frame.mainChild >= 0)
+    bone = frame.end_m - origin;
+  else if (own.area_m2 > 0 && (own.centre_m() - origin).norm() > least_m)
+    bone = own.centre_m() - origin;
+  else if (parent >= 0)
+    bone = frames[static_cast<std::size_t>(parent)].world.rotation.col(1);
+  bone.normalize();
+  if (!symmetry.central(joint)) return bone;
+  // A bone in the plane of symmetry stays there.
+  const Vec3 flat = bone - bone.dot(symmetry.plane.normal()) * symmetry.plane.normal();
+  return flat.norm() > 0.1 ? Vec3(flat.normalized()) : Vec3::UnitY();
+}
+
+BoneFrame mirroredFrame(const Symmetry& symmetry, const BoneFrame& other, const Vec3& origin) {
+  BoneFrame frame;
+  const int child = other.mainChild;
+  frame.mainChild = child < 0 ? -1 : symmetry.partner[static_cast<std::size_t>(child)];
+  frame.end_m = symmetry.plane.point(other.end_m);
+  frame.length_m = other.length_m;
+  frame.world = frameOf(origin, symmetry.plane.axial(other.world.rotation.col(0)),
+                        symmetry.plane.direction(other.world.rotation.col(1)));
+  return frame;
+}
+
 }  // namespace
 
 std::vector<BoneFrame> findBoneFrames(const RiggedModel& model, const BodySurface& surface,
@@ -169,38 +200,20 @@ std::vector<BoneFrame> findBoneFrames(const RiggedModel& model, const BodySurfac
   for (std::size_t j = 0; j < count; ++j) {
     BoneFrame& frame = frames[j];
     const Vec3 origin = model.joints[j].rest_world.translation_m;
-    frame.world.translation_m = origin;
     if (symmetry.mirrored(j)) {
-      const auto image = static_cast<std::size_t>(symmetry.partner[j]);
-      const BoneFrame& other = frames[image];
-      const int child = other.mainChild;
-      frame.mainChild = child < 0 ? -1 : symmetry.partner[static_cast<std::size_t>(child)];
-      frame.end_m = symmetry.plane.point(other.end_m);
-      frame.length_m = other.length_m;
-      frame.world = frameOf(origin, symmetry.plane.axial(other.world.rotation.col(0)),
-                            symmetry.plane.direction(other.world.rotation.col(1)));
+      frame =
+          mirroredFrame(symmetry, frames[static_cast<std::size_t>(symmetry.partner[j])], origin);
       continue;
     }
+    frame.world.translation_m = origin;
     frame.mainChild = mainChild(model, symmetry, children, dominions[j], least_m, j);
-    Vec3 bone = Vec3::UnitY();
     if (frame.mainChild >= 0) {
       frame.end_m =
           model.joints[static_cast<std::size_t>(frame.mainChild)].rest_world.translation_m;
       frame.length_m = (frame.end_m - origin).norm();
-      bone = (frame.end_m - origin) / frame.length_m;
-    } else {
-      const Dominion& own = dominions[j];
-      const int parent = model.joints[j].parent;
-      if (own.area_m2 > 0 && (own.centre_m() - origin).norm() > least_m)
-        bone = (own.centre_m() - origin).normalized();
-      else if (parent >= 0)
-        bone = frames[static_cast<std::size_t>(parent)].world.rotation.col(1);
-      endAtPoints(surface, j, bone, frame);
     }
-    if (symmetry.central(j)) {  // a bone in the plane stays there
-      Vec3 flat = bone - bone.dot(symmetry.plane.normal()) * symmetry.plane.normal();
-      if (flat.norm() > 0.5) bone = flat.normalized();
-    }
+    const Vec3 bone = boneDirection(model, symmetry, frames, dominions[j], least_m, j);
+    if (frame.mainChild < 0) endAtPoints(surface, j, bone, frame);
     frame.world = frameOf(origin, bendAxis(model, symmetry, j, frame, bone), bone);
   }
   return frames;
