@@ -1,0 +1,266 @@
+#include <fascia/skin/self_contact.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fascia/base/parallel.h>
+
+namespace fascia {
+namespace {
+
+// Blocks handed to a thread at once.
+constexpr std::size_t kBlocksPerTask = 8;
+// Each halves, at least, what is left where only one of two sides has a contact of its own.
+constexpr int kPasses = 4;
+constexpr int kVelocityPasses = 2;
+// The strength of a contact reaches 1 where the cosine of the normals is this much below the limit:
+// a point that turns away is let go gradually, not dropped and caught again.
+constexpr float kFacingLimit = 0.2f, kFacingFade = 0.3f;
+// A deep point comes up over several intervals: this many gaps and this share of the way in each.
+// At once it would be flung, and the elastic skin torn along.
+constexpr float kMostGaps = 2, kMostShare = 0.25f;
+// Within this share of the gap sheets touch: approaching is over.
+constexpr float kTouching = 0.05f;
+// By how many gaps another sheet must be more urgent than the flesh to take its half space: less
+// than a resting point trembles, and it would go to and fro between the two.
+constexpr float kMoreUrgent = 0.05f;
+
+Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
+  return {a.x[k], a.y[k], a.z[k]};
+}
+void put(VectorArray& a, std::size_t k, const Eigen::Vector3f& v) {
+  a.x[k] = v.x(), a.y[k] = v.y(), a.z[k] = v.z();
+}
+
+Eigen::Vector3f blend(const VectorArray& a, const std::array<std::uint32_t, 3>& corners,
+                      const Eigen::Vector3f& weights) {
+  return weights[0] * get(a, corners[0]) + weights[1] * get(a, corners[1]) +
+         weights[2] * get(a, corners[2]);
+}
+
+// Square metres per kilogram: how readily a piece of skin gives way. 0 for what cannot move.
+float mobility(const SelfContactModel& model, const PointModel& points, std::size_t k) {
+  return points.free[k] > 0 && points.mass[k] > 0 ? model.area_m2[k] / points.mass[k] : 0.f;
+}
+
+float keptDistance(const SelfContactModel& model, std::uint32_t point, std::uint32_t group) {
+  for (const SelfContactModel::RestDistance& r : model.restDistances[point])
+    if (r.group == group) return std::min(r.keep_m, model.gap_m);
+  return model.gap_m;
+}
+
+}  // namespace
+
+float SelfContact::Contact::distance(const VectorArray& position) const {
+  return normal.dot(get(position, point) - blend(position, corners, weights));
+}
+
+float SelfContact::Contact::approach(const VectorArray& velocity) const {
+  return distance(velocity);
+}
+
+SelfContact::SelfContact(const SelfContactModel& model)
+    : model_(&model),
+      search_(model),
+      found_(model.blocks.size() * PointBlock::kCapacity),
+      foundCounts_(model.blocks.size()),
+      hasContact_(model.points),
+      pushingMass_(model.points),
+      change_(model.points) {
+  contacts_.reserve(found_.size());
+  pushed_.reserve(model.points);
+}
+
+SelfContact::Result SelfContact::resolve(const PointModel& points, float reach_m,
+                                         VectorArray& position, VectorArray& velocity,
+                                         PointSurroundings& around, float interval_s) {
+  find(points, reach_m, position, velocity, interval_s);
+  shareOut(points);
+  const Result result = limitWays(position);
+  moveApart(points, around, position);
+  removeApproach(points, position, velocity);
+  writeHalfSpaces(position, velocity, interval_s, around);
+  forget();
+  return result;
+}
+
+void SelfContact::find(const PointModel& points, float reach_m, const VectorArray& position,
+                       const VectorArray& velocity, float interval_s) {
+  search_.update(position, velocity, interval_s);
+  const std::size_t blocks = model_->blocks.size();
+  parallelFor((blocks + kBlocksPerTask - 1) / kBlocksPerTask, [&](std::size_t task) {
+    const std::size_t end = std::min(blocks, (task + 1) * kBlocksPerTask);
+    for (std::size_t b = task * kBlocksPerTask; b < end; ++b)
+      findOfBlock(b, points, reach_m, position, velocity, interval_s);
+  });
+  contacts_.clear();
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const auto first = found_.begin() + static_cast<std::ptrdiff_t>(b * PointBlock::kCapacity);
+    contacts_.insert(contacts_.end(), first, first + foundCounts_[b]);
+  }
+}
+
+// The nearest contact of each of a block's points.
+void SelfContact::findOfBlock(std::size_t block, const PointModel& points, float reach_m,
+                              const VectorArray& position, const VectorArray& velocity,
+                              float interval_s) {
+  struct Best {
+    float nearest_m = 1e30f, keep_m;
+    Touch touch;
+  };
+  std::array<Best, PointBlock::kCapacity> best;
+  const PointBlock& b = model_->blocks[block];
+  const auto consider = [&](const Touch& touch) {
+    Best& known = best[touch.point - b.first];
+    // Equally near triangles share an edge: the choice must not depend on the order of the search.
+    if (touch.nearest_m > known.nearest_m ||
+        (touch.nearest_m == known.nearest_m && touch.triangle > known.touch.triangle))
+      return;
+    if (points.free[touch.point] == 0) return;
+    const float keep_m = keptDistance(*model_, touch.point, touch.group);
+    const float gap_m = touch.distance_m - keep_m;
+    if (keep_m == SelfContactModel::kLeaveAlone) return;
+    const Eigen::Vector3f relative =
+        get(velocity, touch.point) -
+        blend(velocity, model_->triangle(touch.triangle), touch.weights);
+    if (gap_m > reach_m + interval_s * std::max(0.f, -relative.dot(touch.normal))) return;
+    known = {touch.nearest_m, keep_m, touch};
+  };
+  search_.search(block, {model_->gap_m + reach_m, 1, position, velocity}, std::cref(consider));
+  std::uint32_t& count = foundCounts_[block] = 0;
+  for (const Best& c : best) {
+    if (c.nearest_m == Best().nearest_m) continue;
+    const float strength = std::min(1.f, (kFacingLimit - c.touch.facing) / kFacingFade);
+    found_[block * PointBlock::kCapacity + count++] = {c.touch.point,
+                                                       model_->triangle(c.touch.triangle),
+                                                       c.touch.weights,
+                                                       c.touch.normal,
+                                                       c.keep_m,
+                                                       strength,
+                                                       1};
+  }
+}
+
+// How two sides share the way apart: by their mobility, as two sheets of skin do that collide,
+// m v conserved. A corner of the triangle gives way as far as the skin around it is in contact.
+void SelfContact::shareOut(const PointModel& points) {
+  for (const Contact& c : contacts_) hasContact_[c.point] = 1;
+  for (const Contact& c : contacts_) {
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t k = c.corners[static_cast<std::size_t>(i)];
+      if (hasContact_[k] || mobility(*model_, points, k) == 0 || !(c.weights[i] > 0)) continue;
+      if (pushingMass_[k] == 0) pushed_.push_back(k);
+      pushingMass_[k] += c.weights[i] * points.mass[c.point];
+    }
+  }
+  for (Contact& c : contacts_) {
+    const float own = mobility(*model_, points, c.point);
+    float other = 0;
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t k = c.corners[static_cast<std::size_t>(i)];
+      const float covered = hasContact_[k] ? 1.f : std::min(1.f, pushingMass_[k] / points.mass[k]);
+      other += c.weights[i] * covered * mobility(*model_, points, k);
+    }
+    c.share = own > 0 ? own / (own + other) : 0.f;
+  }
+}
+
+SelfContact::Result SelfContact::limitWays(const VectorArray& position) {
+  Result result;
+  for (Contact& c : contacts_) {
+    const float distance = c.distance(position), missing = c.keep_m - distance;
+    if (!(missing > 0)) continue;
+    ++result.contacts;
+    result.deepest_m = std::max(result.deepest_m, missing);
+    c.keep_m = std::min(c.keep_m, distance + kMostGaps * model_->gap_m + kMostShare * missing);
+  }
+  return result;
+}
+
+// Gives every contact what it wants, wanted(contact) ≥ 0 along its normal. Points with a contact of
+// their own move by their share; other corners are pushed by the mass of what pushes them. All see
+// the same state, so that nothing depends on the order.
+template <class Wanted>
+void SelfContact::balance(const PointModel& points, const Wanted& wanted, VectorArray& values) {
+  const auto add = [](VectorArray& a, std::size_t k, const Eigen::Vector3f& v) {
+    put(a, k, get(a, k) + v);
+  };
+  for (const Contact& c : contacts_) {
+    const float amount = c.strength * c.share * wanted(c);
+    if (!(amount > 0)) continue;
+    add(change_, c.point, amount * c.normal);
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t k = c.corners[static_cast<std::size_t>(i)];
+      if (hasContact_[k] || pushingMass_[k] == 0) continue;
+      const float mass = std::max(points.mass[k], pushingMass_[k]);
+      add(change_, k, -amount * c.weights[i] * points.mass[c.point] / mass * c.normal);
+    }
+  }
+  const auto apply = [&](std::size_t k) {
+    const Eigen::Vector3f change = get(change_, k);
+    if (change.squaredNorm() > 0) add(values, k, change);
+    put(change_, k, Eigen::Vector3f::Zero());
+  };
+  for (const Contact& c : contacts_) apply(c.point);
+  for (const std::uint32_t k : pushed_) apply(k);
+}
+
+void SelfContact::moveApart(const PointModel& points, const PointSurroundings& around,
+                            VectorArray& position) {
+  const auto stayOutOfFlesh = [&](std::size_t k) {
+    const Eigen::Vector3f normal = get(around.normal, k), place = get(position, k);
+    const float depth = around.offset[k] - normal.dot(place);
+    if (depth > 0) put(position, k, place + depth * normal);
+  };
+  for (int pass = 0; pass < kPasses; ++pass) {
+    balance(
+        points, [&](const Contact& c) { return c.keep_m - c.distance(position); }, position);
+    for (const Contact& c : contacts_)
+      if (c.distance(position) != c.keep_m) stayOutOfFlesh(c.point);
+    for (const std::uint32_t k : pushed_) stayOutOfFlesh(k);
+  }
+}
+
+void SelfContact::removeApproach(const PointModel& points, const VectorArray& position,
+                                 VectorArray& velocity) {
+  const float touching_m = kTouching * model_->gap_m;
+  for (int pass = 0; pass < kVelocityPasses; ++pass)
+    balance(
+        points,
+        [&](const Contact& c) {
+          const bool touches = c.distance(position) - c.keep_m <= touching_m;
+          return touches ? -c.approach(velocity) : 0.f;
+        },
+        velocity);
+}
+
+// The half space ends where the two sides meet if nothing else acts on them: it moves with the
+// velocity that they have in common then, and starts from where their shares of the way meet.
+void SelfContact::writeHalfSpaces(const VectorArray& position, const VectorArray& velocity,
+                                  float interval_s, PointSurroundings& around) const {
+  for (const Contact& c : contacts_) {
+    const std::size_t k = c.point;
+    const Eigen::Vector3f place = get(position, k), own = get(velocity, k);
+    const Eigen::Vector3f common = own + c.share * (blend(velocity, c.corners, c.weights) - own);
+    const float way_m =
+        c.share * std::max(0.f, c.distance(position) - c.keep_m) + (1 - c.strength) * model_->gap_m;
+    const Eigen::Vector3f flesh = get(around.normal, k);
+    if (flesh.squaredNorm() > 0) {
+      const float then = way_m + interval_s * c.normal.dot(own - common);
+      const float fleshThen = flesh.dot(place) - around.offset[k] +
+                              interval_s * flesh.dot(own - get(around.fleshVelocity, k));
+      if (fleshThen < 0 || then > fleshThen - kMoreUrgent * model_->gap_m) continue;
+    }
+    put(around.normal, k, c.normal);
+    put(around.fleshVelocity, k, common);
+    around.offset[k] = c.normal.dot(place) - way_m;
+  }
+}
+
+void SelfContact::forget() {
+  for (const Contact& c : contacts_) hasContact_[c.point] = 0;
+  for (const std::uint32_t k : pushed_) pushingMass_[k] = 0;
+  pushed_.clear();
+}
+
+}  // namespace fascia

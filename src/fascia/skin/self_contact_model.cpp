@@ -1,0 +1,331 @@
+#include <fascia/skin/self_contact_model.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <queue>
+
+#include <fascia/base/parallel.h>
+#include <fascia/geometry/triangle_hierarchy.h>
+#include <fascia/skin/self_contact_search.h>
+
+namespace fascia {
+namespace {
+
+using Triangles = std::span<const std::array<std::uint32_t, 3>>;
+using RestDistance = SelfContactModel::RestDistance;
+
+// Half the circle that a sheet can be bent into without coming nearer than the gap to itself is
+// π/2 gaps long; points twice as far apart on the surface may touch.
+constexpr double kNearGaps = kPi;
+// Caps the list of points that are near on the surface, for meshes much finer than the gap.
+constexpr std::size_t kMostNear = 256;
+// What of a limb's thickness a point may come through from one side.
+constexpr float kDepthShare = 0.5f;
+// In the rest shape deeper points count too: they may come up later. Below the share that would
+// take the other side of every thin limb for one that came through.
+constexpr float kRestDepthScale = 1.5f;
+// Sheets nearer than this many gaps in the rest shape cross, for all that rounding can tell.
+constexpr float kCrossing = 0.02f;
+// Distances in the rest shape are kept up to rounding.
+constexpr float kRestSlack = 0.02f;
+// How many points around one that crosses another part at rest are left alone like that one.
+constexpr int kSpread = 2;
+
+Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
+  return {a.x[k], a.y[k], a.z[k]};
+}
+
+constexpr std::size_t wholeVectors(std::size_t count) {
+  return (count + SelfContactModel::kLanes - 1) / SelfContactModel::kLanes *
+         SelfContactModel::kLanes;
+}
+
+// Points joined by edges, each list sorted.
+Lists<std::uint32_t> neighborsOf(Triangles triangles, std::size_t points) {
+  std::vector<std::vector<std::uint32_t>> sets(points);
+  for (const auto& t : triangles)
+    for (std::size_t c = 0; c < 3; ++c)
+      for (const std::size_t other : {(c + 1) % 3, (c + 2) % 3}) sets[t[c]].push_back(t[other]);
+  Lists<std::uint32_t> out;
+  for (std::vector<std::uint32_t>& set : sets) {
+    std::sort(set.begin(), set.end());
+    out.items.insert(out.items.end(), set.begin(), std::unique(set.begin(), set.end()));
+    out.endList();
+  }
+  return out;
+}
+
+// All points within a distance along edges, and those one edge away: Dijkstra's search from one
+// point at a time.
+class NearSearch {
+ public:
+  NearSearch(const Lists<std::uint32_t>& neighbors, const VectorArray& rest)
+      : neighbors_(neighbors), rest_(rest), distance_(neighbors.size(), kFar) {}
+
+  void append(std::uint32_t start, float limit_m, std::vector<std::uint32_t>& out) {
+    reach(start, 0);
+    for (const std::uint32_t n : neighbors_[start]) reach(n, length(start, n));
+    while (!queue_.empty() && reached_.size() < kMostNear) {
+      const auto [distance, point] = queue_.top();
+      queue_.pop();
+      if (distance > limit_m || distance > distance_[point]) continue;
+      for (const std::uint32_t n : neighbors_[point])
+        if (distance + length(point, n) <= limit_m) reach(n, distance + length(point, n));
+    }
+    out.insert(out.end(), reached_.begin(), reached_.end());
+    for (const std::uint32_t p : reached_) distance_[p] = kFar;
+    reached_.clear();
+    queue_ = {};
+  }
+
+ private:
+  static constexpr float kFar = 1e30f;
+  using Entry = std::pair<float, std::uint32_t>;
+
+  float length(std::uint32_t a, std::uint32_t b) const {
+    return (get(rest_, a) - get(rest_, b)).norm();
+  }
+  void reach(std::uint32_t point, float distance) {
+    if (!(distance < distance_[point])) return;
+    if (distance_[point] == kFar) reached_.push_back(point);
+    distance_[point] = distance;
+    queue_.push({distance, point});
+  }
+
+  const Lists<std::uint32_t>& neighbors_;
+  const VectorArray& rest_;
+  std::vector<float> distance_;
+  std::vector<std::uint32_t> reached_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+};
+
+class Preparation {
+ public:
+  Preparation(Triangles triangles, const VectorArray& rest, const std::vector<PointBlock>& blocks,
+              float gap_m)
+      : triangles_(triangles), rest_(rest), neighbors_(neighborsOf(triangles, rest.size())) {
+    model_.blocks = blocks;
+    model_.gap_m = gap_m;
+    model_.points = rest.size();
+  }
+
+  SelfContactModel run() {
+    makeGroups();
+    makeFans();
+    findNearPoints();
+    measureDepths();
+    measureRestDistances();
+    return std::move(model_);
+  }
+
+ private:
+  // The block that most corners of a triangle are in; the number of blocks if none is.
+  std::vector<std::uint32_t> blocksOfTriangles() const {
+    const auto none = static_cast<std::uint32_t>(model_.blocks.size());
+    std::vector<std::uint32_t> ofPoint(model_.points, none), ofTriangle;
+    for (std::uint32_t b = 0; b < none; ++b)
+      for (std::uint32_t l = 0; l < model_.blocks[b].count; ++l)
+        ofPoint[model_.blocks[b].first + l] = b;
+    for (const auto& t : triangles_) {
+      std::array<std::uint32_t, 3> of{ofPoint[t[0]], ofPoint[t[1]], ofPoint[t[2]]};
+      std::sort(of.begin(), of.end());
+      // `none` sorts last.
+      ofTriangle.push_back(of[1] != none && of[1] == of[2] ? of[1] : of[0]);
+    }
+    return ofTriangle;
+  }
+
+  void makeGroups() {
+    const std::vector<std::uint32_t> block = blocksOfTriangles();
+    std::vector<std::uint32_t> order(triangles_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return block[a] < block[b]; });
+    for (std::size_t begin = 0; begin < order.size();) {
+      std::size_t end = begin;
+      while (end < order.size() && block[order[end]] == block[order[begin]]) ++end;
+      const std::size_t parts = (end - begin + SelfContactModel::Group::kCapacity - 1) /
+                                SelfContactModel::Group::kCapacity;
+      for (std::size_t p = 0; p < parts; ++p)
+        addGroup(
+            std::span(order).subspan(begin + (end - begin) * p / parts,
+                                     (end - begin) * (p + 1) / parts - (end - begin) * p / parts));
+      begin = end;
+    }
+  }
+
+  void addGroup(std::span<const std::uint32_t> members) {
+    SelfContactModel& m = model_;
+    const std::size_t first = m.corners[0].size(), count = wholeVectors(members.size());
+    m.groups.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
+    std::vector<std::int32_t> points;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& t = triangles_[members[std::min(i, members.size() - 1)]];
+      for (std::size_t c = 0; c < 3; ++c) {
+        m.corners[c].push_back(static_cast<std::int32_t>(t[c]));
+        points.push_back(static_cast<std::int32_t>(t[c]));
+      }
+      isRepeated_.push_back(i >= members.size());
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    points.resize(wholeVectors(points.size()), points.back());
+    m.groupPoints.items.insert(m.groupPoints.items.end(), points.begin(), points.end());
+    m.groupPoints.endList();
+    m.depth_m.resize(m.corners[0].size());
+  }
+
+  void makeFans() {
+    SelfContactModel& m = model_;
+    std::vector<std::vector<std::int32_t>> around(wholeVectors(m.points));
+    m.area_m2.assign(m.points, 0.f);
+    for (std::size_t t = 0; t < m.triangleCount(); ++t) {
+      if (isRepeated_[t]) continue;
+      const auto [a, b, c] = m.triangle(t);
+      const Eigen::Vector3f r = get(rest_, a);
+      const float area = 0.5f * (get(rest_, b) - r).cross(get(rest_, c) - r).norm();
+      for (const std::uint32_t corner : {a, b, c}) {
+        around[corner].push_back(static_cast<std::int32_t>(t));
+        m.area_m2[corner] += area / 3;
+      }
+    }
+    const auto missing = static_cast<std::int32_t>(m.triangleCount());
+    for (std::size_t k = 0; k < around.size(); k += SelfContactModel::kLanes) {
+      const auto chunk = std::span(around).subspan(k, SelfContactModel::kLanes);
+      std::size_t slots = 0;
+      for (const auto& list : chunk) slots = std::max(slots, list.size());
+      for (std::size_t slot = 0; slot < slots; ++slot)
+        for (const auto& list : chunk)
+          m.fans.items.push_back(slot < list.size() ? list[slot] : missing);
+      m.fans.endList();
+    }
+  }
+
+  void findNearPoints() {
+    NearSearch search(neighbors_, rest_);
+    const auto limit_m = static_cast<float>(kNearGaps * model_.gap_m);
+    for (std::size_t k = 0; k < model_.points; ++k) {
+      search.append(static_cast<std::uint32_t>(k), limit_m, model_.nearPoints.items);
+      model_.nearPoints.endList();
+    }
+  }
+
+  // From rays into the flesh, up to about one edge.
+  void measureDepths() {
+    SelfContactModel& m = model_;
+    TriangleMesh mesh;
+    for (std::size_t k = 0; k < m.points; ++k) mesh.positions.push_back(get(rest_, k));
+    mesh.triangles.assign(triangles_.begin(), triangles_.end());
+    computeNormals(mesh.positions, mesh.triangles, mesh.normals);
+    const TriangleHierarchy hierarchy(mesh);
+    const auto thickness = [&](const Vec3& from, const Vec3& normal, double most_m) {
+      const Vec3 inside = from - 1e-3 * most_m * normal;
+      const auto hit = hierarchy.firstHit(inside, -normal, most_m);
+      return static_cast<float>(hit ? hit->t : most_m);
+    };
+    const float meanEdge = meanEdgeLength();
+    parallelFor(m.groups.size(), [&](std::size_t g) {
+      for (std::size_t t = m.groups[g].first; t < m.groups[g].first + m.groups[g].count; ++t) {
+        const auto corners = m.triangle(t);
+        Vec3 center = Vec3::Zero(), normal = Vec3::Zero();
+        float edge = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          center += get(rest_, corners[c]).cast<double>() / 3;
+          normal += mesh.normals[corners[c]].cast<double>();
+          edge = std::max(edge, (get(rest_, corners[c]) - get(rest_, corners[(c + 1) % 3])).norm());
+        }
+        const float most_m = (m.gap_m + std::min(edge, 2 * meanEdge)) / kDepthShare;
+        float least_m = thickness(center, normal.normalized(), most_m);
+        for (const std::uint32_t c : corners)
+          least_m = std::min(least_m, thickness(get(rest_, c).cast<double>(),
+                                                mesh.normals[c].cast<double>(), most_m));
+        m.depth_m[t] = kDepthShare * least_m;
+      }
+    });
+    for (const float depth : m.depth_m) m.deepest_m = std::max(m.deepest_m, depth);
+  }
+
+  float meanEdgeLength() const {
+    double sum = 0;
+    for (const auto& t : triangles_)
+      for (std::size_t c = 0; c < 3; ++c)
+        sum += (get(rest_, t[c]) - get(rest_, t[(c + 1) % 3])).norm();
+    return static_cast<float>(sum /
+                              static_cast<double>(std::max<std::size_t>(1, 3 * triangles_.size())));
+  }
+
+  // What touches in the rest shape already, and spreads that over the surroundings of both.
+  void measureRestDistances() {
+    std::vector<std::vector<RestDistance>> lists(model_.points);
+    SurfaceSearch search(model_);
+    const VectorArray still(model_.points);
+    search.update(rest_, still, 0);
+    const SurfaceSearch::Query query{model_.gap_m, kRestDepthScale, rest_, still};
+    for (std::size_t b = 0; b < model_.blocks.size(); ++b)
+      search.search(b, query, [&](const Touch& touch) {
+        const bool crosses = touch.distance_m < kCrossing * model_.gap_m;
+        lists[touch.point].push_back({touch.group, crosses ? SelfContactModel::kLeaveAlone
+                                                           : (1 - kRestSlack) * touch.distance_m});
+      });
+    spreadOverGroups(lists);
+    for (int turn = 0; turn < kSpread; ++turn) spreadOverPoints(lists);
+    for (std::vector<RestDistance>& list : lists) {
+      model_.restDistances.items.insert(model_.restDistances.items.end(), list.begin(), list.end());
+      model_.restDistances.endList();
+    }
+  }
+
+  // Keeps the least distance of each group.
+  static void reduce(std::vector<RestDistance>& list) {
+    std::sort(list.begin(), list.end(), [](const RestDistance& a, const RestDistance& b) {
+      return a.group != b.group ? a.group < b.group : a.keep_m < b.keep_m;
+    });
+    const auto same = [](const RestDistance& a, const RestDistance& b) {
+      return a.group == b.group;
+    };
+    list.erase(std::unique(list.begin(), list.end(), same), list.end());
+  }
+
+  void spreadOverGroups(std::vector<std::vector<RestDistance>>& lists) const {
+    const SelfContactModel& m = model_;
+    std::vector<std::vector<std::uint32_t>> groupsOfPoint(m.points);
+    for (std::uint32_t g = 0; g < m.groups.size(); ++g)
+      for (const std::int32_t p : m.groupPoints[g])
+        groupsOfPoint[static_cast<std::size_t>(p)].push_back(g);
+    for (std::vector<RestDistance>& list : lists) {
+      reduce(list);
+      const std::vector<RestDistance> own = list;
+      for (const RestDistance& r : own)
+        for (const std::int32_t p : m.groupPoints[r.group])
+          for (const std::uint32_t g : groupsOfPoint[static_cast<std::size_t>(p)])
+            list.push_back({g, r.keep_m});
+      reduce(list);
+    }
+  }
+
+  void spreadOverPoints(std::vector<std::vector<RestDistance>>& lists) const {
+    const std::vector<std::vector<RestDistance>> before = lists;
+    for (std::size_t k = 0; k < lists.size(); ++k) {
+      for (const std::uint32_t n : neighbors_[k])
+        lists[k].insert(lists[k].end(), before[n].begin(), before[n].end());
+      reduce(lists[k]);
+    }
+  }
+
+  Triangles triangles_;
+  const VectorArray& rest_;
+  Lists<std::uint32_t> neighbors_;
+  std::vector<bool> isRepeated_;  // per triangle of the model
+  SelfContactModel model_;
+};
+
+}  // namespace
+
+SelfContactModel prepareSelfContact(std::span<const std::array<std::uint32_t, 3>> triangles,
+                                    const VectorArray& rest, const std::vector<PointBlock>& blocks,
+                                    float gap_m) {
+  return Preparation(triangles, rest, blocks, gap_m).run();
+}
+
+}  // namespace fascia

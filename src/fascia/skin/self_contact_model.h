@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <fascia/base/aligned.h>
+#include <fascia/skin/point_kernels.h>
+
+namespace fascia {
+
+using IndexArray = std::vector<std::int32_t, AlignedAllocator<std::int32_t>>;
+
+// Lists of different lengths, one after the other.
+template <class T>
+struct Lists {
+  std::vector<std::uint32_t> first{0};  // one more than there are lists
+  std::vector<T> items;
+
+  std::size_t size() const { return first.size() - 1; }
+  std::span<const T> operator[](std::size_t list) const {
+    return {items.data() + first[list], items.data() + first[list + 1]};
+  }
+  void endList() { first.push_back(static_cast<std::uint32_t>(items.size())); }
+};
+
+// What of a skin may touch what, prepared once from the rest shape (spec L22). Constant.
+struct SelfContactModel {
+  // Kernels work on this many at once, or on parts of it.
+  static constexpr std::size_t kLanes = 16;
+  // A run of triangles that lie together: those of one block of points. Filled up to whole vectors
+  // by repeating its last triangle.
+  struct Group {
+    static constexpr std::size_t kCapacity = 80;  // 32 points of a mesh have about 64 triangles
+    std::uint32_t first, count;                   // multiples of kLanes
+  };
+  // How near a point may come to a group's triangles, where that is less than the gap.
+  struct RestDistance {
+    std::uint32_t group;
+    float keep_m;  // kLeaveAlone: they cross in the rest shape
+  };
+  static constexpr float kLeaveAlone = -1e30f;
+
+  std::vector<PointBlock> blocks;  // compact patches of points that are tested
+  float gap_m = 0.002f;            // distance that is kept between two sheets of skin
+  float deepest_m = 0;             // largest of depth_m
+
+  std::vector<Group> groups;
+  std::array<IndexArray, 3> corners;  // per triangle, group by group: storage indices
+  FloatArray depth_m;                 // per triangle: points deeper below it have not come
+                                      // through it, but through the other side of a thin limb
+  Lists<std::int32_t> groupPoints;    // per group: its corners, filled up to whole vectors
+
+  std::size_t points = 0;  // storage
+  FloatArray area_m2;      // per point
+  // The triangles around kLanes points at a time, slot by slot; the number of all triangles where a
+  // point has no more.
+  Lists<std::int32_t> fans;
+  Lists<std::uint32_t> nearPoints;  // per point: too near on the surface to touch; itself included
+  Lists<RestDistance> restDistances;  // per point
+
+  std::size_t triangleCount() const { return depth_m.size(); }
+  std::array<std::uint32_t, 3> triangle(std::size_t t) const {
+    return {static_cast<std::uint32_t>(corners[0][t]), static_cast<std::uint32_t>(corners[1][t]),
+            static_cast<std::uint32_t>(corners[2][t])};
+  }
+};
+
+// `triangles` hold storage indices into `rest`, counter-clockwise from outside; every point is in
+// at most one block. Points in no block are not moved, but triangles with such corners are
+// obstacles.
+SelfContactModel prepareSelfContact(std::span<const std::array<std::uint32_t, 3>> triangles,
+                                    const VectorArray& rest, const std::vector<PointBlock>& blocks,
+                                    float gap_m);
+
+}  // namespace fascia
