@@ -120,6 +120,7 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
         diagnostics.error(pointer + "/name", "found '" + def_.motions[i].name + "' a second time",
                           "give every motion a name of its own");
   }
+  if (def_.rig && def_.rig->model) bindRigMotions(diagnostics);
   if (def_.skin && hasFlesh) {
     PosedSkeleton posedSkeleton;
     PosedFlesh posedFlesh;
@@ -127,10 +128,28 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
     skeleton_.pose(rest, posedSkeleton);
     flesh_.pose(rest, posedSkeleton, {}, posedFlesh);
     skin_ = std::make_unique<Skin>(*def_.skin, settingsOf(def_.simulation, options),
-                                   SkinBase{skeleton_, flesh_, posedSkeleton, posedFlesh}, "/skin",
-                                   diagnostics);
+                                   SkinBase{skeleton_, flesh_, posedSkeleton, posedFlesh,
+                                            def_.rig ? def_.rig->model.get() : nullptr},
+                                   "/skin", diagnostics);
   }
   diagnostics.throwIfErrors();
+}
+
+// The rig's motions come after the character's own; one that has the name of an own one is hidden.
+void Character::bindRigMotions(Diagnostics& diagnostics) {
+  const std::shared_ptr<const RiggedModel>& model = def_.rig->model;
+  std::vector<SampledFrame> frames;
+  for (const RigJoint& j : model->joints)
+    frames.push_back(
+        {j.name, j.parent < 0 ? "" : model->joints[static_cast<std::size_t>(j.parent)].name,
+         j.rest_world});
+  for (const SampledMotion& motion : model->motions) {
+    if (findMotion(motion.name) >= 0) continue;
+    // Shares the ownership of the whole model.
+    clips_.push_back(bindSampled(std::shared_ptr<const SampledMotion>(model, &motion), frames,
+                                 skeleton_, "/rig", diagnostics));
+    if (!diagnostics.ok()) return;
+  }
 }
 
 int Character::findMotion(std::string_view name) const {
@@ -144,7 +163,7 @@ std::uint64_t hashOf(const Character& character, const CharacterState& state) {
   StateHash hash;
   hash.add(state.time_s);
   hash.add(state.posture.values.data(), state.posture.values.size() * sizeof(double));
-  if (character.skin()) state.skin.addTo(hash, character.skin()->layout());
+  if (character.skin()) state.skin.addTo(hash, character.skin()->topology());
   return hash.value();
 }
 

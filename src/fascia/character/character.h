@@ -36,6 +36,8 @@ class Character {
   int findMotion(std::string_view name) const;
 
  private:
+  void bindRigMotions(Diagnostics& diagnostics);
+
   CharacterDef def_;
   Skeleton skeleton_;
   Flesh flesh_, ornaments_;

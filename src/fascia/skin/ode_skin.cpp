@@ -35,7 +35,8 @@ OdeSkin::OdeSkin(const Skin& skin)
       stepper_(makeIntegrator(skin.settings().integrator), optionsOf(skin)),
       inverseMass_(3 * skin.pointCount()),
       points_(skin.pointCount()),
-      anchors_(skin.pointCount()) {
+      anchors_(skin.pointCount()),
+      surface_(skin.topology().makeStepper()) {
   const PointModel& model = skin.points();
   for (std::size_t p = 0; p < skin.pointCount(); ++p) {
     const std::size_t k = skin.storageIndex(p);
@@ -51,8 +52,8 @@ OdeSkin::OdeSkin(const Skin& skin)
   ode_.resize(inverseMass_.size());
   dampingDirection_.resize(points_.size());
   dampingPlace_.reserve(inverseMass_.size());
-  for (VectorArray* a : {&position_, &velocity_, &force_}) a->resize(skin.layout().storage());
-  scratch_.resize(skin.layout());
+  for (VectorArray* a : {&position_, &velocity_, &force_})
+    a->resize(skin.topology().storage());
 }
 
 void OdeSkin::load(std::span<const double> r, VectorArray& out) const {
@@ -62,7 +63,7 @@ void OdeSkin::load(std::span<const double> r, VectorArray& out) const {
     out.y[k] = static_cast<float>(r[3 * p + 1]);
     out.z[k] = static_cast<float>(r[3 * p + 2]);
   }
-  fillPads(skin_.layout(), out);
+  skin_.topology().complete(out);
 }
 
 void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, FleshContact& contact,
@@ -106,8 +107,7 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, Flesh
 
 void OdeSkin::addPositionForces(double t_s, std::span<const double> r, std::span<double> f) {
   load(r, position_);
-  gridForces(skin_.layout(), skin_.elastic().coefficients(), position_, force_, scratch_);
-  if (skin_.bending().active()) skin_.bending().addForces(position_, force_);
+  surface_->forces(position_, force_);
   const Vec3& gravity = skin_.settings().gravity_m_per_s2;
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const Point& point = points_[p];
@@ -148,8 +148,7 @@ void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<con
   load(r, position_);
   entries_.clear();
   dampingEntries_.clear();
-  skin_.elastic().addForceJacobian(position_, false, entries_);
-  if (skin_.bending().active()) skin_.bending().addForceJacobian(position_, entries_);
+  skin_.topology().addForceJacobian(position_, entries_);
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const Point& point = points_[p];
     const Strand s = strand(p, t_s, r);

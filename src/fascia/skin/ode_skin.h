@@ -60,6 +60,7 @@ class OdeSkin final : public SecondOrderSystem {
   std::vector<double> inverseMass_;
   std::vector<Point> points_;
   std::vector<Anchor> anchors_;
+  std::unique_ptr<SurfaceStepper> surface_;
   // Damping along the strands for the positions below: f −= g (g·(v − v_anchor)). Leapfrog's inner
   // iteration asks for velocity forces several times at one place.
   std::vector<Vec3> dampingDirection_;
@@ -67,7 +68,6 @@ class OdeSkin final : public SecondOrderSystem {
   double dampingTime_s_ = 0;
   OdeState ode_;
   VectorArray position_, velocity_, positionBefore_, velocityBefore_, force_;
-  SweepScratch scratch_;
   std::vector<Eigen::Triplet<double>> entries_, dampingEntries_;
 
   // The interval being integrated.

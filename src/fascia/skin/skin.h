@@ -11,13 +11,14 @@
 #include <fascia/base/hash.h>
 #include <fascia/flesh/flesh.h>
 #include <fascia/geometry/triangle_mesh.h>
-#include <fascia/skin/bending.h>
-#include <fascia/skin/elastic_grid.h>
+#include <fascia/rig/rigged_model.h>
 #include <fascia/skin/flesh_contact.h>
-#include <fascia/skin/grid_layout.h>
+#include <fascia/skin/grid_topology.h>
+#include <fascia/skin/joint_carrier.h>
 #include <fascia/skin/leapfrog.h>
 #include <fascia/skin/point_model.h>
 #include <fascia/skin/quantities.h>
+#include <fascia/skin/self_contact.h>
 #include <fascia/skin/skin_def.h>
 #include <fascia/skin/tissue.h>
 
@@ -46,32 +47,44 @@ struct SkinBase {
   const Flesh& flesh;
   const PosedSkeleton& posedSkeleton;
   const PosedFlesh& posedFlesh;
+  const RiggedModel* rig = nullptr;  // the skin is this mesh; nullptr: a grid around the flesh
 };
 
-// A constant elastic skin on a grid: geometry of rest, material, anchors. Spec L2–L6, L14.
+// The flesh and the joints at one moment.
+struct SkinPose {
+  const Field* field;
+  std::span<const Transform> joints;
+};
+
+// Scratch memory for carrying points with a pose.
+struct CarryScratch {
+  VectorArray points;
+  std::vector<JointCarrier::Motion> motion;
+};
+
+// A constant elastic skin: geometry of rest, material, anchors. Spec L2–L6, L14, L21.
 class Skin {
  public:
   // Reports every fault of `def` with pointers below `pointer`; with errors the result must not be
-  // used. Shrink-wraps the flesh unless `def.points` brings a rest shape.
+  // used. A grid shrink-wraps the flesh unless `def.points` brings a rest shape.
   Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
        const std::string& pointer, Diagnostics& diagnostics);
 
-  const GridLayout& layout() const { return layout_; }
-  int columns() const { return layout_.columns; }
-  int rows() const { return layout_.rows; }
-  std::size_t pointCount() const { return layout_.pointCount(); }  // point p = j * columns + i
-  std::size_t storageIndex(std::size_t p) const {
-    const auto columns = static_cast<std::size_t>(layout_.columns);
-    return layout_.at(static_cast<int>(p % columns), static_cast<int>(p / columns));
-  }
+  const SkinTopology& topology() const { return *topology_; }
+  std::size_t pointCount() const { return topology_->pointCount(); }
+  std::size_t storageIndex(std::size_t p) const { return topology_->storageIndex(p); }
+
+  // Of a grid skin only (isGrid); point p = j * columns + i.
+  bool isGrid() const { return grid_ != nullptr; }
+  const GridLayout& layout() const { return grid_->layout(); }
+  int columns() const { return layout().columns; }
+  int rows() const { return layout().rows; }
+  const ElasticGrid& elastic() const { return grid_->elastic(); }
+  const Bending& bending() const { return grid_->bending(); }
 
   const SkinSettings& settings() const { return settings_; }
-  const ElasticGrid& elastic() const { return elastic_; }
-  const Bending& bending() const { return bending_; }
   const PointModel& points() const { return points_; }
   const ContactResponse& contactResponse() const { return contactResponse_; }
-  const TissueAnchors& anchors() const { return anchors_; }    // inner ends of the strands
-  const TissueAnchors& carriers() const { return carriers_; }  // every point, in its solid's matter
   const VectorArray& restPosition() const { return rest_; }
   const SkinQuantities& quantities() const { return quantities_; }
   std::span<const PointBlock> blocks() const { return blocks_; }
@@ -80,8 +93,11 @@ class Skin {
   // this one's does. See leapfrog.h.
   const Skin* coarse() const { return coarse_.get(); }
   double size_m() const { return size_m_; }  // diagonal of the rest shape's box
+  const SelfContactModel* selfContact() const { return selfContact_.get(); }  // may be nullptr
 
-  // Points fixed to a joint: the two end rows.
+  // The inner ends of a grid's strands, in its solids' matter.
+  const TissueAnchors& anchors() const { return anchors_; }
+  // Points of a grid that are fixed to a joint: the two end rows.
   struct Fixed {
     std::size_t point;
     JointId joint;
@@ -89,26 +105,36 @@ class Skin {
   };
   const std::vector<Fixed>& fixed() const { return fixed_; }
 
+  // Where a pose carries things. Each writes the entries of the points meant, and no others.
+  void placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
+  void placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
+  void placeAll(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
+  std::span<const std::size_t> fixedPoints() const { return fixedPoints_; }  // storage indices
+
  private:
-  friend class SkinBuilder;
+  friend class GridSkinBuilder;
+  friend class MeshSkinBuilder;
   Skin() = default;
 
-  GridLayout layout_;
+  std::shared_ptr<const SkinTopology> topology_;
+  const GridTopology* grid_ = nullptr;  // topology_, if it is one
   SkinSettings settings_;
   SkinQuantities quantities_;
   VectorArray rest_;
-  ElasticGrid elastic_;
-  Bending bending_;
   PointModel points_;
   ContactResponse contactResponse_;
-  TissueAnchors anchors_, carriers_;
-  std::vector<Fixed> fixed_;
   std::vector<PointBlock> blocks_;
   double defaultStep_s_ = 0, size_m_ = 0;
+  std::vector<std::size_t> fixedPoints_;
+  std::shared_ptr<const SelfContactModel> selfContact_;
+  // A grid's points are carried by solids and joints, a mesh's by its joints' weights.
+  TissueAnchors anchors_, carriers_;
+  std::vector<Fixed> fixed_;
+  JointCarrier anchorsByJoints_, fixedByJoints_, allByJoints_;
   std::shared_ptr<const Skin> coarse_;
 };
 
-// What changes over time; a plain value. Arrays are in GridLayout storage order, pads filled.
+// What changes over time; a plain value. Arrays are in storage order, padding filled.
 struct SkinState {
   VectorArray position, velocity;  // world, m and m/s
   PointSurroundings surroundings;  // of the interval that starts now
@@ -118,7 +144,7 @@ struct SkinState {
   float maxSpeed_m_per_s = 0;      // at the end of the last interval
   bool ready = false;              // surroundings belong to this state's time
 
-  void addTo(StateHash& hash, const GridLayout& layout) const;
+  void addTo(StateHash& hash, const SkinTopology& topology) const;
 };
 
 struct SkinStats {
@@ -132,10 +158,6 @@ struct SkinStats {
 
 // The flesh at any moment of the interval being simulated. The result stays valid until the next
 // call.
-struct SkinPose {
-  const Field* field;
-  std::span<const Transform> joints;
-};
 class SkinPoseSource {
  public:
   virtual ~SkinPoseSource() = default;
@@ -170,11 +192,12 @@ void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double
 // afresh, outside of the step.
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats);
 
-// The same surface at another resolution (spec L18), at any moment of a run.
+// The same grid surface at another resolution (spec L18), at any moment of a run.
 SkinState resampled(const Skin& from, const SkinState& state, const Skin& to);
 
-// The surface of a state for display and export: the tube with its ends capped. Vertex order and
-// triangles are the same in every frame: row by row columns + 1 points (the seam column twice for
+// The surface of a state for display and export; vertex order and triangles are the same in every
+// frame. A mesh: its drawn vertices (RiggedModel::vertices), without normals. A grid: the tube with
+// its ends capped, row by row columns + 1 points (the seam column twice for
 // its uv), then the centres of the bottom and the top cap. uv: u around, (0,0) = the top end.
 void skinSurface(const Skin& skin, const SkinState& state, TriangleMesh& mesh);
 

@@ -26,7 +26,10 @@ struct SkinMaterialDef {
 };
 
 struct SkinFatDef {
-  double thickness_m = 0.01;  // [0, 1]
+  double thickness_m = 0.01;  // [0, 1]; of an imported mesh: at most, what lies between mesh and
+                              // flesh counts
+  double compressible = 0;    // [0, 0.95]; share of the thickness that pressing can take away
+  double bulk_Pa = 0;         // [0, 1e5]; resistance of each solid's fat to a change of its volume
 };
 
 struct SkinTissueDef {
@@ -92,6 +95,7 @@ struct SkinAnchorDef {
 
 // Per-point values that replace the defaults above, row by row from the bottom end: what a studio
 // saves after sculpting. Each list is empty, or has columns x rows entries (anchors: see skin.h).
+// Of an imported mesh: in the order of RiggedModel::points_m, without anchors and rest positions.
 struct SkinPointsDef {
   int columns = 0, rows = 0;
   std::vector<float> density, stretch_u, stretch_v, shear, bending, drag, prestretch, fat,
@@ -99,6 +103,19 @@ struct SkinPointsDef {
   std::vector<int> anchor_solid;                      // -1: no tissue
   std::vector<std::array<float, 3>> anchor;           // material coordinates on that solid
   std::vector<std::array<float, 3>> rest_position_m;  // world, rest posture
+};
+
+// The skin against itself (spec L22).
+struct SkinContactDef {
+  bool self = false;
+  double gap_m = 0.002;  // (0, 1]; kept between two sheets of skin
+};
+
+// What becomes of a piece of an imported mesh, named by its part or material. Without a rule pieces
+// that hang together with flesh beneath are elastic, others (eyes, teeth, buckles) are rigid.
+struct SkinPartDef {
+  std::string name;
+  bool rigid = true;  // carried by its joints as it is; false: elastic skin
 };
 
 struct SkinDef {
@@ -114,6 +131,8 @@ struct SkinDef {
   std::vector<SkinBrushDef> brushes;
   std::vector<SkinAnchorDef> anchors;
   std::optional<SkinPointsDef> points;
+  SkinContactDef contact;
+  std::vector<SkinPartDef> parts;  // of an imported mesh
 };
 
 }  // namespace fascia

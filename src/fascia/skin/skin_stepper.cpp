@@ -54,9 +54,10 @@ bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anc
 
 SkinStepper::SkinStepper(const Skin& skin)
     : skin_(&skin),
-      stepper_(skin.layout()),
+      surface_(skin.topology().makeStepper()),
       contact_({skin.blocks().begin(), skin.blocks().end()}) {
-  for (VectorArray* a : {&nextAnchor_, &extraForce_}) a->resize(skin.layout().storage());
+  for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
+  if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
   const std::string& integrator = skin.settings().integrator;
   if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
   if (integrator == "auto" && skin.coarse()) {
@@ -99,16 +100,16 @@ int SkinStepper::intervalCount(const SkinPose& end, double span_s, const SkinSta
 
 // Anchors and half spaces for a state that comes from somewhere else.
 void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
-  const GridLayout& g = skin_->layout();
-  state.velocity.resize(g.storage());
-  state.surroundings.resize(g.storage());
-  skin_->anchors().place(*pose.field, scratch_, state.surroundings.anchor);
+  const std::size_t storage = skin_->topology().storage();
+  state.velocity.resize(storage);
+  state.surroundings.resize(storage);
+  skin_->placeAnchors(pose, scratch_, state.surroundings.anchor);
   SkinStats ignored;
   settle(pose, skin_->settings().interval_s, state, ignored);
   if (coarse_) {
     state.coarse.assign(1, resampled(*skin_, state, coarse_->skin()));
     coarse_->begin(pose, state.coarse.front());
-    state.carrierVelocity.resize(g.storage());
+    state.carrierVelocity.resize(storage);
     state.carrierVelocity.fill(0.f);
   }
   state.ready = true;
@@ -162,7 +163,7 @@ void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinStat
 void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& state,
                            SkinStats& stats) {
   PointSurroundings& around = state.surroundings;
-  skin_->anchors().place(*pose.field, scratch_, nextAnchor_);
+  skin_->placeAnchors(pose, scratch_, nextAnchor_);
   const auto rate = static_cast<float>(1 / duration_s);
   const float way = followAnchors(around.anchor, nextAnchor_, rate,
                                   ode_ || coarse_ ? nullptr : &coefficients_.carried,
@@ -177,12 +178,10 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
     state.carrierVelocity.fill(0.f);
     stats.repaired_points += skin_->pointCount();
   }
-  for (const Skin::Fixed& f : skin_->fixed()) {
-    const Vec3 target = pose.joints[f.joint.index()].point(f.position_joint);
-    for (int a = 0; a < 3; ++a)
-      (state.velocity.*kAxes[a])[f.point] =
-          (static_cast<float>(target[a]) - (state.position.*kAxes[a])[f.point]) * rate;
-  }
+  skin_->placeFixed(pose, scratch_, target_);
+  for (const std::size_t k : skin_->fixedPoints())
+    for (const auto axis : kAxes)
+      (state.velocity.*axis)[k] = ((target_.*axis)[k] - (state.position.*axis)[k]) * rate;
 }
 
 // The number of equal steps for an interval; readies the coefficients for their length.
@@ -198,22 +197,10 @@ int SkinStepper::chooseStep(double duration_s) {
 }
 
 void SkinStepper::leapfrog(int steps, SkinState& state, SkinStats& stats) {
-  const bool bends = skin_->bending().active();
-  SweepModel model{
-      &skin_->layout(),
-      &skin_->elastic().coefficients(),
-      {&skin_->points(), &coefficients_, &state.surroundings, bends ? &extraForce_ : nullptr, {}}};
+  StepInputs inputs{&skin_->points(), &coefficients_, &state.surroundings, nullptr, {}};
   for (int a = 0; a < 3; ++a)
-    model.inputs.gravity[a] = static_cast<float>(skin_->settings().gravity_m_per_s2[a]);
-  if (bends) {
-    for (int s = 0; s < steps; ++s) {
-      extraForce_.fill(0.f);
-      skin_->bending().addForces(state.position, extraForce_);
-      stepper_.run(model, s, 1, state.position, state.velocity);
-    }
-  } else {
-    stepper_.run(model, 0, steps, state.position, state.velocity);
-  }
+    inputs.gravity[a] = static_cast<float>(skin_->settings().gravity_m_per_s2[a]);
+  surface_->run(inputs, steps, state.position, state.velocity);
   const double h = coefficients_.step_s;
   stats.steps += static_cast<std::uint64_t>(steps);
   stats.step_min_s = std::min(stats.step_min_s, h);
@@ -224,14 +211,10 @@ void SkinStepper::leapfrog(int steps, SkinState& state, SkinStats& stats) {
 // anchors for the next one.
 void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& state,
                          SkinStats& stats) {
-  const GridLayout& g = skin_->layout();
   repair(pose, state, stats);
-  for (const Skin::Fixed& f : skin_->fixed()) {
-    const Vec3 target = pose.joints[f.joint.index()].point(f.position_joint);
-    for (int a = 0; a < 3; ++a) (state.position.*kAxes[a])[f.point] = static_cast<float>(target[a]);
-  }
+  skin_->placeFixed(pose, scratch_, state.position);
   if (state.ready) std::swap(state.surroundings.anchor, nextAnchor_);
-  fillPads(g, state.position);
+  skin_->topology().complete(state.position);
   // More than the way that the fastest point goes until the next test.
   const float reach = 1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) +
                       0.005f * static_cast<float>(skin_->size_m());
@@ -240,18 +223,23 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
                                         static_cast<float>(skin_->contactResponse().restitution),
                                         state.position, state.velocity, state.surroundings)
                                .maxSpeed_m_per_s;
-  fillPads(g, state.position);
+  if (skin_->selfContact())
+    selfContact_.resolve(skin_->points(), reach, state.position, state.velocity,
+                         state.surroundings);
+  skin_->topology().complete(state.position);
 }
 
 // No state leaves a step with a number that is not finite or a speed that no body has: such points
 // return to where the flesh carries them.
 void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stats) {
   const auto fastest = static_cast<float>(kFastest_per_s * skin_->size_m());
-  const GridLayout& g = skin_->layout();
   const VectorArray& anchorVelocity = state.surroundings.anchorVelocity;
-  if (!anyBroken(state.position, state.velocity, anchorVelocity, fastest, g.row(1),
-                 g.row(g.rows - 1)))
-    return;
+  const auto broken = [&](const SkinTopology::Range& r) {
+    return anyBroken(state.position, state.velocity, anchorVelocity, fastest, r.first,
+                     r.first + r.count);
+  };
+  const std::span<const SkinTopology::Range> ranges = skin_->topology().ranges();
+  if (std::none_of(ranges.begin(), ranges.end(), broken)) return;
   std::vector<std::size_t> points;
   for (const PointBlock& b : skin_->blocks())
     for (std::size_t k = b.first; k < b.first + b.count; ++k)

@@ -35,9 +35,11 @@ class SkinStepper {
 
   const Skin* skin_;
   StepCoefficients coefficients_;
-  GridStepper stepper_;
+  std::unique_ptr<SurfaceStepper> surface_;
   FleshContact contact_;
-  VectorArray nextAnchor_, extraForce_, scratch_;
+  SelfContact selfContact_;
+  VectorArray nextAnchor_, target_;
+  CarryScratch scratch_;
   std::unique_ptr<OdeSkin> ode_;
 
   // The grid that this one rides on, if any.

@@ -1,0 +1,329 @@
+#include <fascia/skin/mesh_skin_builder.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <fascia/base/parallel.h>
+#include <fascia/skin/grid_skin_builder.h>
+#include <fascia/skin/mesh_topology.h>
+
+namespace fascia {
+namespace {
+
+// A mesh is as fine as its author wanted, fingers and faces finest. Steps of this length follow
+// whatever one sees; points that would need shorter ones get added mass and move with their anchors.
+constexpr double kStep_s = 1.0 / 480;
+// A point farther from all flesh than this share of the model's size has none beneath it.
+constexpr double kBare = 0.06;
+// How much firmer, and how much softer, the tissue is where the fat is thin or thick.
+constexpr double kFirmest = 6, kSoftest = 0.5;
+constexpr double kLightest = 0.3, kHeaviest = 2.5;
+// Pieces with a smaller share of the model's size are carried as they are.
+constexpr double kSmallPiece = 0.04;
+
+Vec3 modelPoint(const RiggedModel& rig, std::size_t p) {
+  return rig.points_m[p].cast<double>();
+}
+
+// Sorts [first, last) into compact runs of whole blocks: halves along the longest side, in whole
+// blocks, until one is left.
+void sortIntoBlocks(const RiggedModel& rig, std::uint32_t* first, std::uint32_t* last) {
+  const auto count = static_cast<std::size_t>(last - first);
+  if (count <= PointBlock::kCapacity) {
+    std::sort(first, last);
+    return;
+  }
+  Box box;
+  for (const std::uint32_t* p = first; p != last; ++p) box.add(modelPoint(rig, *p));
+  Eigen::Index axis;
+  box.size().maxCoeff(&axis);
+  const std::size_t blocks = (count + PointBlock::kCapacity - 1) / PointBlock::kCapacity;
+  std::uint32_t* middle = first + (blocks / 2) * PointBlock::kCapacity;
+  std::nth_element(first, middle, last, [&](std::uint32_t a, std::uint32_t b) {
+    const float x = rig.points_m[a][axis], y = rig.points_m[b][axis];
+    return x < y || (x == y && a < b);
+  });
+  sortIntoBlocks(rig, first, middle);
+  sortIntoBlocks(rig, middle, last);
+}
+
+std::vector<Vec3> pointNormals(const RiggedModel& rig) {
+  std::vector<Eigen::Vector3f> normals;
+  computeNormals(rig.points_m, rig.triangles, normals);
+  std::vector<Vec3> out;
+  for (const Eigen::Vector3f& n : normals) out.push_back(n.cast<double>());
+  return out;
+}
+
+// Points on edges that only one triangle has: eyes, mouth, cuffs, the hem of an open sheet.
+std::vector<char> borderPoints(const RiggedModel& rig) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (const auto& t : rig.triangles)
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto [a, b] = std::minmax(t[e], t[(e + 1) % 3]);
+      edges.push_back({a, b});
+    }
+  std::sort(edges.begin(), edges.end());
+  std::vector<char> border(rig.points_m.size(), 0);
+  for (std::size_t i = 0, j; i < edges.size(); i = j) {
+    for (j = i + 1; j < edges.size() && edges[j] == edges[i];) ++j;
+    if (j - i == 1) border[edges[i][0]] = border[edges[i][1]] = 1;
+  }
+  return border;
+}
+
+double medianOf(std::vector<float> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void MeshSkinBuilder::build() {
+  report_.checkValues(def_);
+  if (!checkDef() || !findJoints()) return;
+  measureFat();
+  chooseFixed();
+  orderPoints();
+  makeRestShape();
+  setQuantities();
+  makeModel();
+  carryPoints();
+}
+
+bool MeshSkinBuilder::checkDef() const {
+  bool ok = true;
+  if (base_.flesh.solidCount() == 0) {
+    report_.error("", "found a skin, but no solids for it to lie on",
+                  "run 'fascia flesh' on the rig, or add at least one solid");
+    ok = false;
+  }
+  if (def_.points) {
+    if (!def_.points->anchor.empty() || !def_.points->rest_position_m.empty()) {
+      report_.error("/points", "found anchors or rest positions",
+                    "an imported mesh brings its own");
+      ok = false;
+    }
+    ok = report_.checkPointLists(*def_.points, rig_.points_m.size(), "points of the mesh") && ok;
+  }
+  for (std::size_t i = 0; i < def_.parts.size(); ++i) {
+    const auto named = [&](const RigPart& part) {
+      return part.name == def_.parts[i].name ||
+             (part.material >= 0 &&
+              rig_.materials[static_cast<std::size_t>(part.material)].name == def_.parts[i].name);
+    };
+    if (std::any_of(rig_.parts.begin(), rig_.parts.end(), named)) continue;
+    report_.error("/parts/" + std::to_string(i) + "/name",
+                  "found no part or material named '" + def_.parts[i].name + "' in the mesh",
+                  "'fascia info' lists them");
+    ok = false;
+  }
+  return ok;
+}
+
+bool MeshSkinBuilder::findJoints() {
+  bool ok = true;
+  for (const RigJoint& j : rig_.joints) {
+    const JointId id = report_.findJoint("", j.name);
+    ok = ok && id.valid();
+    if (id.valid())
+      joints_.push_back({id.index(), j.parent, base_.posedSkeleton.joint_world[id.index()]});
+  }
+  return ok;
+}
+
+// The fat of an imported figure is what lies between its surface and its solids.
+void MeshSkinBuilder::measureFat() {
+  const std::size_t count = rig_.points_m.size();
+  gap_.resize(count);
+  solid_.resize(count);
+  covered_.resize(count);
+  const double bare = kBare * rig_.size_m();
+  parallelFor(count, [&](std::size_t p) {
+    const NearestFlesh nearest = nearestFlesh(base_.posedFlesh, modelPoint(rig_, p));
+    gap_[p] = nearest.distance;
+    solid_[p] = nearest.solid;
+    covered_[p] = nearest.distance < bare;
+  });
+}
+
+// Borders keep their places on the joints. Pieces by rule: what the file says, else small ones and
+// those without flesh beneath are rigid.
+void MeshSkinBuilder::chooseFixed() {
+  fixed_ = borderPoints(rig_);
+  std::vector<Box> boxes(rig_.componentCount);
+  std::vector<std::size_t> points(rig_.componentCount), covered(rig_.componentCount);
+  for (std::size_t p = 0; p < rig_.points_m.size(); ++p) {
+    const std::uint32_t c = rig_.component[p];
+    boxes[c].add(modelPoint(rig_, p));
+    ++points[c];
+    covered[c] += covered_[p] ? 1u : 0u;
+  }
+  const double small = kSmallPiece * rig_.size_m();
+  for (std::size_t p = 0; p < fixed_.size(); ++p) {
+    const std::uint32_t c = rig_.component[p];
+    if (boxes[c].size().norm() < small || 2 * covered[c] < points[c]) fixed_[p] = 1;
+  }
+  for (const SkinPartDef& rule : def_.parts)
+    for (const RigPart& part : rig_.parts) {
+      const bool material =
+          part.material >= 0 &&
+          rig_.materials[static_cast<std::size_t>(part.material)].name == rule.name;
+      if (part.name != rule.name && !material) continue;
+      for (std::uint32_t v = 0; v < part.vertexCount; ++v)
+        fixed_[rig_.vertices[part.firstVertex + v].point] = rule.rigid ? 1 : 0;
+    }
+}
+
+void MeshSkinBuilder::orderPoints() {
+  order_.resize(rig_.points_m.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  const auto fixed = std::stable_partition(order_.begin(), order_.end(),
+                                           [&](std::uint32_t p) { return !fixed_[p]; });
+  elasticCount_ = static_cast<std::size_t>(fixed - order_.begin());
+  sortIntoBlocks(rig_, order_.data(), order_.data() + elasticCount_);
+  storageOf_.resize(order_.size());
+  for (std::size_t k = 0; k < order_.size(); ++k)
+    storageOf_[order_[k]] = static_cast<std::uint32_t>(k);
+  for (std::size_t k = 0; k < elasticCount_; k += PointBlock::kCapacity)
+    skin_.blocks_.push_back({k, static_cast<std::uint32_t>(std::min<std::size_t>(
+                                    PointBlock::kCapacity, elasticCount_ - k))});
+  for (std::size_t k = elasticCount_; k < order_.size(); ++k) skin_.fixedPoints_.push_back(k);
+}
+
+void MeshSkinBuilder::makeRestShape() {
+  // Kernels read whole vectors, one beyond the last.
+  const std::size_t storage = (order_.size() + GridLayout::kPad - 1) / GridLayout::kPad *
+                                  GridLayout::kPad +
+                              GridLayout::kPad;
+  skin_.rest_.resize(storage);
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const Eigen::Vector3f& p = rig_.points_m[order_[k]];
+    skin_.rest_.x[k] = p.x(), skin_.rest_.y[k] = p.y(), skin_.rest_.z[k] = p.z();
+  }
+  skin_.size_m_ = std::max(1e-6, rig_.size_m());
+}
+
+// Uniform values; where the fat is thin the skin is lighter and sits tighter, where it is thick it
+// weighs and gives more. Then what the file says of single points, regions and brushes.
+void MeshSkinBuilder::setQuantities() {
+  const std::size_t storage = skin_.rest_.size();
+  std::vector<float> thicknesses;
+  for (std::size_t p = 0; p < gap_.size(); ++p)
+    if (covered_[p]) thicknesses.push_back(std::max(gap_[p], 0.f));
+  const double usual = std::max(medianOf(std::move(thicknesses)), 1e-4 * skin_.size_m_);
+
+  SkinQuantities& q = skin_.quantities_;
+  for (const QuantityInfo& i : quantityInfos())
+    q[i.quantity].assign(storage, static_cast<float>(uniformValue(def_, i.quantity)));
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const std::uint32_t p = order_[k];
+    const double thickness =
+        covered_[p] ? std::clamp<double>(gap_[p], 1e-9, def_.fat.thickness_m) : 1e-9;
+    const double thin = usual / thickness;
+    q[SkinQuantity::fat][k] = covered_[p] ? static_cast<float>(thickness) : 0.f;
+    q[SkinQuantity::tissue_stiffness][k] *= static_cast<float>(std::clamp(thin, kSoftest, kFirmest));
+    q[SkinQuantity::density][k] *= static_cast<float>(std::clamp(1 / thin, kLightest, kHeaviest));
+    q[SkinQuantity::tissue_rest_length][k] =
+        static_cast<float>(def_.tissue.rest_length_m.value_or(0));
+  }
+  naturalFat_ = q[SkinQuantity::fat];
+  if (def_.points)
+    for (const QuantityInfo& i : quantityInfos()) {
+      const std::vector<float>& saved = pointValues(*def_.points, i.quantity);
+      if (saved.empty()) continue;
+      for (std::size_t k = 0; k < order_.size(); ++k) q[i.quantity][k] = saved[order_[k]];
+    }
+  std::vector<EditPoint> points;
+  for (std::size_t k = 0; k < order_.size(); ++k)
+    points.push_back({k, 0, 0, covered_[order_[k]] ? solid_[order_[k]] : SolidId()});
+  applySkinEdits(def_, base_, report_, points, false, skin_.rest_, q);
+}
+
+TriangleMembrane MeshSkinBuilder::makeMembrane() const {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  TriangleMaterial material;
+  for (const auto& t : rig_.triangles) {
+    // Triangles between fixed points move as their joints do: they pull on nothing.
+    if (fixed_[t[0]] && fixed_[t[1]] && fixed_[t[2]]) continue;
+    triangles.push_back({storageOf_[t[0]], storageOf_[t[1]], storageOf_[t[2]]});
+    // u runs around the limb, as on a grid: across the way from the joint to the triangle's flesh.
+    const JointCarrier::Joint& joint = joints_[rig_.weights[t[0]].joint[0]];
+    material.u.push_back(joint.rest_world.rotation.col(1).cast<float>());
+  }
+  const SkinQuantities& q = skin_.quantities_;
+  material.stretch_u = q[SkinQuantity::stretch_v];
+  material.stretch_v = q[SkinQuantity::stretch_u];
+  material.shear = q[SkinQuantity::shear];
+  material.bending = q[SkinQuantity::bending];
+  material.prestretch = q[SkinQuantity::prestretch];
+  material.max_stretch = static_cast<float>(def_.material.max_stretch);
+  return TriangleMembrane(triangles, skin_.rest_, material);
+}
+
+void MeshSkinBuilder::makeModel() {
+  TriangleMembrane membrane = makeMembrane();
+  skin_.contactResponse_ = {def_.material.friction_per_s, def_.material.restitution};
+  std::vector<std::size_t> points(order_.size());
+  std::iota(points.begin(), points.end(), 0u);
+  const std::span<const std::size_t> elastic = std::span(points).first(elasticCount_);
+  skin_.points_ = makePointModel(
+      {skin_.quantities_, membrane.pointAreas(), membrane.stiffnessBound(),
+       1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(order_.size()), points,
+       skin_.fixedPoints_, elastic});
+  // What contact keeps: what pressing leaves of the fat, but never more than there is at rest.
+  const auto kept = static_cast<float>(1 - def_.fat.compressible);
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const float natural = gap_[order_[k]];
+    skin_.points_.fat[k] = natural > 0 ? std::min(kept * skin_.points_.fat[k], natural) : natural;
+  }
+  skin_.defaultStep_s_ = kStep_s;
+
+  MeshTopology::Drawn drawn;
+  for (const RigVertex& v : rig_.vertices) {
+    drawn.points.push_back(storageOf_[v.point]);
+    drawn.uvs.push_back(v.uv);
+  }
+  drawn.triangles = rig_.drawnTriangles;
+  skin_.topology_ =
+      std::make_shared<MeshTopology>(order_.size(), std::move(membrane), std::move(drawn));
+}
+
+void MeshSkinBuilder::carryPoints() {
+  const std::vector<Vec3> normals = pointNormals(rig_);
+  const SkinQuantities& q = skin_.quantities_;
+  std::vector<JointCarrier::Point> all, anchors, fixed;
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const std::uint32_t p = order_[k];
+    JointCarrier::Point point{k, modelPoint(rig_, p), rig_.weights[p]};
+    // Fat that was put on or taken away moves the skin with it.
+    point.rest_world += double{q[SkinQuantity::fat][k] - naturalFat_[k]} * normals[p];
+    all.push_back(point);
+    if (k >= elasticCount_) {
+      fixed.push_back(point);
+      continue;
+    }
+    const double stiffness = skin_.points_.tissueStiffness[k];
+    if (stiffness > 0)
+      point.rest_world -= skin_.points_.mass[k] / stiffness * skin_.settings_.gravity_m_per_s2;
+    anchors.push_back(point);
+  }
+  skin_.allByJoints_ = JointCarrier(joints_, all);
+  skin_.anchorsByJoints_ = JointCarrier(joints_, anchors);
+  skin_.fixedByJoints_ = JointCarrier(joints_, fixed);
+}
+
+Skin::Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
+           const std::string& pointer, Diagnostics& diagnostics)
+    : settings_(settings) {
+  if (base.rig)
+    MeshSkinBuilder(*this, def, base, pointer, diagnostics).build();
+  else
+    GridSkinBuilder(*this, def, base, pointer, diagnostics).build();
+}
+
+}  // namespace fascia

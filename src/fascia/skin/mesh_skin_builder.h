@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/skin/skin_parts.h>
+#include <fascia/skin/triangle_membrane.h>
+
+namespace fascia {
+
+// Builds the skin of an imported mesh step by step; each step reads only what the ones before it
+// made. Its rest shape is in equilibrium in the rest posture: the strands' anchors are placed so
+// that they carry its weight there.
+class MeshSkinBuilder {
+ public:
+  MeshSkinBuilder(Skin& skin, const SkinDef& def, const SkinBase& base, std::string pointer,
+                  Diagnostics& diagnostics)
+      : skin_(skin),
+        def_(def),
+        base_(base),
+        rig_(*base.rig),
+        report_(base, std::move(pointer), diagnostics) {}
+
+  void build();
+
+ private:
+  bool checkDef() const;
+  bool findJoints();
+  void measureFat();
+  void chooseFixed();
+  void orderPoints();
+  void makeRestShape();
+  void setQuantities();
+  void makeModel();
+  void carryPoints();
+  TriangleMembrane makeMembrane() const;
+
+  Skin& skin_;
+  const SkinDef& def_;
+  const SkinBase& base_;
+  const RiggedModel& rig_;
+  SkinReport report_;
+
+  std::vector<JointCarrier::Joint> joints_;
+  // Per point of the model:
+  std::vector<float> gap_;          // from the nearest solid, m
+  std::vector<SolidId> solid_;      // that one
+  std::vector<char> covered_;       // whether it counts as flesh beneath
+  std::vector<char> fixed_;         // carried by joints, not simulated
+  std::vector<std::uint32_t> storageOf_;
+  std::vector<std::uint32_t> order_;  // model point per storage index
+  std::size_t elasticCount_ = 0;      // the first so many in storage are simulated
+  FloatArray naturalFat_;             // per storage index, before edits
+};
+
+}  // namespace fascia

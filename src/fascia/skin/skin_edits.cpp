@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fascia/skin/skin_parts.h>
+
+namespace fascia {
+namespace {
+
+// 1 inside [low, high], falling to 0 over `feather` outside of it; low > high wraps around.
+double inRange(double x, double low, double high, double feather, bool periodic) {
+  const auto outsideBy = [&](double t) {
+    if (low <= high) return std::max({0.0, low - t, t - high});
+    return std::max(0.0, std::min(low - t, t - high));
+  };
+  double distance = outsideBy(x);
+  if (periodic && low <= high) distance = std::min({distance, outsideBy(x - 1), outsideBy(x + 1)});
+  if (distance <= 0) return 1;
+  if (distance >= feather) return 0;
+  const double t = 1 - distance / feather;
+  return t * t * (3 - 2 * t);
+}
+
+float shareOf(const SkinRegionDef& region, SolidId solid, const EditPoint& p) {
+  if (!region.solid.empty()) return p.solid == solid ? 1.f : 0.f;
+  return static_cast<float>(inRange(p.u, region.u_min, region.u_max, region.feather, true) *
+                            inRange(p.v, region.v_min, region.v_max, region.feather, false));
+}
+
+double edited(const SkinRegionDef::Edit& edit, double old) {
+  switch (edit.mode) {
+    case SkinRegionDef::Edit::Mode::set:
+      return edit.value;
+    case SkinRegionDef::Edit::Mode::scale:
+      return old * edit.value;
+    case SkinRegionDef::Edit::Mode::add:
+      break;
+  }
+  return old + edit.value;
+}
+
+}  // namespace
+
+void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
+                    std::span<const EditPoint> points, bool hasCoordinates,
+                    const VectorArray& rest, SkinQuantities& quantities) {
+  for (std::size_t n = 0; n < def.regions.size(); ++n) {
+    const SkinRegionDef& region = def.regions[n];
+    const std::string where = "/regions/" + std::to_string(n);
+    if (region.solid.empty() && !hasCoordinates) {
+      report.error(where + "/solid", "found a region without a solid",
+                   "an imported mesh has no u and v along and around: name a solid");
+      continue;
+    }
+    if (region.solid.empty() && !(region.v_min <= region.v_max))
+      report.error(where + "/v", "found the larger number first",
+                   "only u goes around; v runs upwards");
+    SolidId solid;
+    if (!region.solid.empty()) solid = report.findSolid(where + "/solid", region.solid);
+    for (const SkinRegionDef::Edit& edit : region.edits) {
+      FloatArray& values = quantities[edit.quantity];
+      for (const EditPoint& p : points) {
+        const double old = values[p.point];
+        values[p.point] =
+            static_cast<float>(old + shareOf(region, solid, p) * (edited(edit, old) - old));
+      }
+    }
+  }
+  for (std::size_t n = 0; n < def.brushes.size(); ++n) {
+    const SkinBrushDef& brush = def.brushes[n];
+    const std::string where = "/brushes/" + std::to_string(n);
+    report.checkRange(where + "/radius_m", brush.radius_m, 1e-6, 1e6);
+    Vec3 center = brush.center_m;
+    if (!brush.joint.empty()) {
+      const JointId joint = report.findJoint(where + "/joint", brush.joint);
+      if (!joint.valid()) continue;
+      center = base.posedSkeleton.joint_world[joint.index()].point(center);
+    }
+    FloatArray& values = quantities[brush.quantity];
+    for (const EditPoint& p : points) {
+      const double r = (pointAt(rest, p.point) - center).norm() / std::max(1e-9, brush.radius_m);
+      values[p.point] = std::max(
+          0.f, values[p.point] + static_cast<float>(brush.amount * std::exp(-0.5 * r * r)));
+    }
+  }
+  for (const QuantityInfo& i : quantityInfos())
+    for (float& v : quantities[i.quantity])
+      v = std::clamp(v, static_cast<float>(i.min), static_cast<float>(i.max));
+}
+
+}  // namespace fascia

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/skin/skin.h>
+
+namespace fascia {
+
+// What the builders of grid and mesh skins share.
+
+inline Vec3 pointAt(const VectorArray& a, std::size_t k) {
+  return {a.x[k], a.y[k], a.z[k]};
+}
+
+// Reports faults of a skin's definition, and looks up what it names.
+class SkinReport {
+ public:
+  SkinReport(const SkinBase& base, std::string pointer, Diagnostics& diagnostics)
+      : base_(base), pointer_(std::move(pointer)), diagnostics_(diagnostics) {}
+
+  void error(const std::string& where, std::string message, std::string hint = {}) const;
+  void checkRange(const std::string& where, double value, double low, double high) const;
+  // Everything that has a range, whatever the skin lies on.
+  void checkValues(const SkinDef& def) const;
+  // Saved per-point lists: `count` values within their ranges each, or none.
+  bool checkPointLists(const SkinPointsDef& points, std::size_t count,
+                       const std::string& expected) const;
+  JointId findJoint(const std::string& where, const std::string& name) const;
+  SolidId findSolid(const std::string& where, const std::string& name) const;
+
+ private:
+  const SkinBase& base_;
+  std::string pointer_;
+  Diagnostics& diagnostics_;
+};
+
+// The solid nearest to a point, and how far away it is.
+struct NearestFlesh {
+  float distance = 3e38f;
+  SolidId solid;
+  Vec3 normal = Vec3::UnitY();
+};
+NearestFlesh nearestFlesh(const Field& field, const Vec3& p);
+
+// Regions and brushes on the points of a skin.
+struct EditPoint {
+  std::size_t point;  // storage index
+  double u, v;        // material coordinates; not read if the skin has none
+  SolidId solid;      // that the point is tied to; invalid: none
+};
+void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
+                    std::span<const EditPoint> points, bool hasCoordinates,
+                    const VectorArray& rest, SkinQuantities& quantities);
+
+// Fills what stepping needs to know of the points from their quantities and areas (m²).
+// `tied`: storage indices of the points with a tissue strand.
+struct PointModelInput {
+  const SkinQuantities& quantities;
+  const FloatArray& area;
+  const FloatArray& stiffness;  // of the surface itself, N/m
+  double leastArea_m2;          // rest cells that are nearly nothing still need a mass
+  std::span<const std::size_t> points, fixedPoints, tied;
+};
+PointModel makePointModel(const PointModelInput& input);
+
+}  // namespace fascia
