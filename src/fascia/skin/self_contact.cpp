@@ -13,14 +13,17 @@ constexpr std::size_t kBlocksPerTask = 8;
 // Each halves, at least, what is left where only one of two sides has a contact of its own.
 constexpr int kPasses = 4;
 constexpr int kVelocityPasses = 2;
-// The strength of a contact reaches 1 where the cosine of the normals is this much below the limit:
+// The strength of a contact reaches 1 where the cosine of the normals is this much below its limit:
 // a point that turns away is let go gradually, not dropped and caught again.
-constexpr float kFacingLimit = 0.2f, kFacingFade = 0.3f;
+constexpr float kFacingFade = 0.3f;
 // A deep point comes up over several intervals: this many gaps and this share of the way in each.
 // At once it would be flung, and the elastic skin torn along.
 constexpr float kMostGaps = 2, kMostShare = 0.25f;
 // Within this share of the gap sheets touch: approaching is over.
 constexpr float kTouching = 0.05f;
+// Cosine of a way and the flesh's normal below which the flesh stops it instead of leading it
+// aside.
+constexpr float kAgainst = -0.5f;
 // By how many gaps another sheet must be more urgent than the flesh to take its half space: less
 // than a resting point trembles, and it would go to and fro between the two.
 constexpr float kMoreUrgent = 0.05f;
@@ -38,9 +41,16 @@ Eigen::Vector3f blend(const VectorArray& a, const std::array<std::uint32_t, 3>& 
          weights[2] * get(a, corners[2]);
 }
 
-// Square metres per kilogram: how readily a piece of skin gives way. 0 for what cannot move.
-float mobility(const SelfContactModel& model, const PointModel& points, std::size_t k) {
-  return points.free[k] > 0 && points.mass[k] > 0 ? model.area_m2[k] / points.mass[k] : 0.f;
+// Square metres per kilogram: how readily a piece of skin gives way in a direction. 0 for what
+// cannot, also because it lies on flesh there.
+float mobility(const SelfContactModel& model, const PointModel& points,
+               const PointSurroundings& around, const VectorArray& position, std::size_t k,
+               const Eigen::Vector3f& direction) {
+  if (points.free[k] == 0 || !(points.mass[k] > 0)) return 0;
+  const Eigen::Vector3f flesh = get(around.normal, k);
+  const float height = flesh.dot(get(position, k)) - around.offset[k];
+  if (flesh.dot(direction) < kAgainst && height < kTouching * model.gap_m) return 0;
+  return model.area_m2[k] / points.mass[k];
 }
 
 float keptDistance(const SelfContactModel& model, std::uint32_t point, std::uint32_t group) {
@@ -75,7 +85,7 @@ SelfContact::Result SelfContact::resolve(const PointModel& points, float reach_m
                                          VectorArray& position, VectorArray& velocity,
                                          PointSurroundings& around, float interval_s) {
   find(points, reach_m, position, velocity, interval_s);
-  shareOut(points);
+  shareOut(points, around, position);
   const Result result = limitWays(position);
   moveApart(points, around, position);
   removeApproach(points, position, velocity);
@@ -130,7 +140,7 @@ void SelfContact::findOfBlock(std::size_t block, const PointModel& points, float
   std::uint32_t& count = foundCounts_[block] = 0;
   for (const Best& c : best) {
     if (c.nearest_m == Best().nearest_m) continue;
-    const float strength = std::min(1.f, (kFacingLimit - c.touch.facing) / kFacingFade);
+    const float strength = std::min(1.f, (c.touch.facingLimit - c.touch.facing) / kFacingFade);
     found_[block * PointBlock::kCapacity + count++] = {c.touch.point,
                                                        model_->triangle(c.touch.triangle),
                                                        c.touch.weights,
@@ -143,23 +153,25 @@ void SelfContact::findOfBlock(std::size_t block, const PointModel& points, float
 
 // How two sides share the way apart: by their mobility, as two sheets of skin do that collide,
 // m v conserved. A corner of the triangle gives way as far as the skin around it is in contact.
-void SelfContact::shareOut(const PointModel& points) {
+void SelfContact::shareOut(const PointModel& points, const PointSurroundings& around,
+                           const VectorArray& position) {
   for (const Contact& c : contacts_) hasContact_[c.point] = 1;
   for (const Contact& c : contacts_) {
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t k = c.corners[static_cast<std::size_t>(i)];
-      if (hasContact_[k] || mobility(*model_, points, k) == 0 || !(c.weights[i] > 0)) continue;
+      if (hasContact_[k] || points.free[k] == 0 || !(c.weights[i] > 0)) continue;
       if (pushingMass_[k] == 0) pushed_.push_back(k);
       pushingMass_[k] += c.weights[i] * points.mass[c.point];
     }
   }
   for (Contact& c : contacts_) {
-    const float own = mobility(*model_, points, c.point);
+    const float own = mobility(*model_, points, around, position, c.point, c.normal);
     float other = 0;
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t k = c.corners[static_cast<std::size_t>(i)];
       const float covered = hasContact_[k] ? 1.f : std::min(1.f, pushingMass_[k] / points.mass[k]);
-      other += c.weights[i] * covered * mobility(*model_, points, k);
+      const float corner = mobility(*model_, points, around, position, k, -c.normal);
+      if (corner > 0) other += c.weights[i] * covered * corner;
     }
     c.share = own > 0 ? own / (own + other) : 0.f;
   }
@@ -215,8 +227,7 @@ void SelfContact::moveApart(const PointModel& points, const PointSurroundings& a
   for (int pass = 0; pass < kPasses; ++pass) {
     balance(
         points, [&](const Contact& c) { return c.keep_m - c.distance(position); }, position);
-    for (const Contact& c : contacts_)
-      if (c.distance(position) != c.keep_m) stayOutOfFlesh(c.point);
+    for (const Contact& c : contacts_) stayOutOfFlesh(c.point);
     for (const std::uint32_t k : pushed_) stayOutOfFlesh(k);
   }
 }

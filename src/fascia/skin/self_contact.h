@@ -48,7 +48,8 @@ class SelfContact {
             const VectorArray& velocity, float interval_s);
   void findOfBlock(std::size_t block, const PointModel& points, float reach_m,
                    const VectorArray& position, const VectorArray& velocity, float interval_s);
-  void shareOut(const PointModel& points);
+  void shareOut(const PointModel& points, const PointSurroundings& around,
+                const VectorArray& position);
   Result limitWays(const VectorArray& position);
   void moveApart(const PointModel& points, const PointSurroundings& around, VectorArray& position);
   void removeApproach(const PointModel& points, const VectorArray& position, VectorArray& velocity);

@@ -23,10 +23,6 @@ HWY_INLINE V3 gather(const VectorArray& a, VI k) {
   return {hn::GatherIndex(d, a.x.data(), k), hn::GatherIndex(d, a.y.data(), k),
           hn::GatherIndex(d, a.z.data(), k)};
 }
-HWY_INLINE V3 cross(V3 a, V3 b) {
-  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
-          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
-}
 HWY_INLINE V3 least(V3 a, V3 b) {
   return {hn::Min(a.x, b.x), hn::Min(a.y, b.y), hn::Min(a.z, b.z)};
 }

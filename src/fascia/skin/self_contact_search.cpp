@@ -15,6 +15,9 @@ constexpr std::size_t kChunksPerTask = 64;
 // Cosine of the normals of a point and of the surface above which they do not face each other:
 // beside a crease or on an edge of a limb, not opposite.
 constexpr float kFacing = 0.2f;
+// The deepest points must face the surface that they came through this clearly: what came out at
+// the other side of a limb must not be pulled through its flanks.
+constexpr float kFacingDeep = -0.5f;
 // A point that is farther beside a triangle than above or below it has nothing to do with it. Near
 // the surface, in gaps, directions mean little.
 constexpr float kLeastSlope = 0.5f, kAnySlope = 0.25f;
@@ -148,16 +151,17 @@ bool SurfaceSearch::touches(std::uint32_t point, std::uint32_t triangle, const P
   const float length = normal.norm();
   if (!(length > kLeastNormal)) return false;
   out.normal = normal / length;
-  out.facing = out.normal.dot(get(frame_.normal, point));
-  if (!(out.facing < kFacing)) return false;
   const Eigen::Vector3f way = (p - nearest.position).cast<float>();
   out.distance_m = way.dot(out.normal);
   out.nearest_m = way.norm();
   if (std::abs(out.distance_m) < kLeastSlope * out.nearest_m &&
       out.nearest_m > kAnySlope * model_->gap_m)
     return false;
-  return out.distance_m < 0 ? out.nearest_m <= reach.depthScale * model_->depth_m[triangle]
-                            : out.distance_m <= reach.ahead_m;
+  const float depth = out.nearest_m / (reach.depthScale * model_->depth_m[triangle]);
+  if (out.distance_m < 0 ? !(depth <= 1) : !(out.distance_m <= reach.ahead_m)) return false;
+  out.facing = out.normal.dot(get(frame_.normal, point));
+  out.facingLimit = out.distance_m < 0 ? kFacing + depth * (kFacingDeep - kFacing) : kFacing;
+  return out.facing < out.facingLimit;
 }
 
 }  // namespace fascia

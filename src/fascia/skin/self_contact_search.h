@@ -18,7 +18,8 @@ struct Touch {
   Eigen::Vector3f normal;   // of the surface there, smoothed, unit
   float distance_m;         // along the normal; negative: the point is behind
   float nearest_m;          // to the triangle's nearest point, ≥ 0
-  float facing;             // cosine of the two normals
+  float facing;             // cosine of the two normals …
+  float facingLimit;        // … and what it must be below
 };
 
 // Finds the points of a skin that are near triangles of its other parts.
