@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fascia/io/rig_gltf_mesh.h>
+
+namespace fascia {
+namespace {
+
+// Factors in [0, 1]; colours may be brighter.
+float factor(const GltfPlace& place, double fallback, double most) {
+  const double value = place.numberOr(fallback);
+  return static_cast<float>(std::isfinite(value) ? std::clamp(value, 0.0, most) : fallback);
+}
+
+void readColor(const GltfPlace& place, std::array<float, 4>& color) {
+  constexpr double kBrightest = 1;
+  if (!place) return;
+  if (place.size() != 4) place.fail("is no colour: expected four numbers");
+  for (std::size_t i = 0; i < 4; ++i) color[i] = factor(place.at(i), 1, kBrightest);
+}
+
+bool isPicture(const std::vector<std::uint8_t>& bytes) {
+  const auto begins = [&](std::initializer_list<std::uint8_t> magic) {
+    return bytes.size() > magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
+  };
+  return begins({0x89, 'P', 'N', 'G'}) || begins({0xFF, 0xD8, 0xFF});
+}
+
+// The place of the base colour's texture; the old extension for glossy materials is still met.
+GltfPlace textureInfo(const GltfPlace& material) {
+  const GltfPlace glossy = material["extensions"]["KHR_materials_pbrSpecularGlossiness"];
+  const GltfPlace base = material["pbrMetallicRoughness"]["baseColorTexture"];
+  return base || !glossy["diffuseTexture"] ? base : glossy["diffuseTexture"];
+}
+
+// KHR_texture_transform: uv' = translation · rotation · scale · uv.
+void readTransform(const GltfPlace& transform, GltfTextureUse& use) {
+  if (!transform) return;
+  double offset[2] = {0, 0}, scale[2] = {1, 1};
+  transform["offset"].numbers(offset, 2);
+  transform["scale"].numbers(scale, 2);
+  const double angle = transform["rotation"].numberOr(0), c = std::cos(angle), s = std::sin(angle);
+  Eigen::Matrix<double, 2, 3> m;
+  m << c * scale[0], s * scale[1], offset[0],  //
+      -s * scale[0], c * scale[1], offset[1];
+  if (m.allFinite() && m.cwiseAbs().maxCoeff() < 1e6) use.uvTransform = m.cast<float>();
+  use.uvSet = transform["texCoord"].indexOr(use.uvSet, 8);
+}
+
+void readPicture(const GltfDocument& document, int texture, RiggedModel& model,
+                 RigMaterial& material) {
+  const GltfPlace root = document.root();
+  const GltfPlace source = root["textures"].at(static_cast<std::size_t>(texture))["source"];
+  if (!source) return;
+  material.texture = document.image(source.index(static_cast<int>(root["images"].size())));
+  if (isPicture(material.texture)) return;
+  material.texture.clear();
+  model.notes.push_back("the picture of material " + jsonText(material.name) +
+                        " is missing, or neither PNG nor JPEG: its plain colour is shown");
+}
+
+}  // namespace
+
+GltfTextureUse baseTextureOf(const GltfDocument& document, int material) {
+  const GltfPlace root = document.root();
+  GltfTextureUse use;
+  const GltfPlace info = textureInfo(root["materials"].at(static_cast<std::size_t>(material)));
+  if (!info) return use;
+  use.texture = info["index"].index(static_cast<int>(root["textures"].size()));
+  use.uvSet = info["texCoord"].indexOr(0, 8);
+  readTransform(info["extensions"]["KHR_texture_transform"], use);
+  return use;
+}
+
+void readGltfMaterials(const GltfDocument& document, RiggedModel& model) {
+  const GltfPlace materials = document.root()["materials"];
+  std::vector<int> firstWithTexture(document.root()["textures"].size(), -1);
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    const GltfPlace place = materials.at(m), metal = place["pbrMetallicRoughness"];
+    RigMaterial& material = model.materials.emplace_back();
+    material.name = place["name"].textOr("");
+    material.color = {1, 1, 1, 1};  // what a material that names none has
+    const GltfPlace glossy = place["extensions"]["KHR_materials_pbrSpecularGlossiness"];
+    readColor(glossy["diffuseFactor"], material.color);
+    readColor(metal["baseColorFactor"], material.color);
+    material.roughness = factor(metal["roughnessFactor"], 1, 1);
+    material.metallic = factor(metal["metallicFactor"], glossy ? 0 : 1, 1);
+    material.doubleSided = place["doubleSided"].flagOr(false);
+    const int texture = baseTextureOf(document, static_cast<int>(m)).texture;
+    if (texture < 0) continue;
+    int& first = firstWithTexture[static_cast<std::size_t>(texture)];
+    if (first >= 0) {  // one picture is read once
+      material.texture = model.materials[static_cast<std::size_t>(first)].texture;
+      continue;
+    }
+    first = static_cast<int>(m);
+    readPicture(document, texture, model, material);
+  }
+}
+
+}  // namespace fascia
