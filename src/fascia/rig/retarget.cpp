@@ -14,6 +14,8 @@ namespace {
 
 // Above this the file's rest pose is no stance, and a first frame that is one is taken instead.
 constexpr double kNoStance_rad = radians(12);
+// A foot that moves slower stands. Larger: swinging feet count; smaller: noise hides standing ones.
+constexpr double kStanding_legs_per_s = 0.15;
 
 std::size_t at(int id) {
   return static_cast<std::size_t>(id);
@@ -114,7 +116,7 @@ class Retargeter {
   void placeJoints();
   void plantFeet();
   void append(SampledMotion& out) const;
-  double lowestFoot() const;
+  std::vector<double> standingHeights();
   double legLength(std::span<const Transform> world, bool ofTarget) const;
   Vec3 rootGoal() const;
   Vec3 ballGoal(const DrivenLeg& leg, std::size_t which) const;
@@ -296,37 +298,38 @@ void Retargeter::poseFrame(std::size_t frame) {
   plantFeet();
 }
 
-double Retargeter::lowestFoot() const {
-  double lowest = 1e300;
-  for (const DrivenLeg& leg : legsOf(driven_)) {
-    for (const int d : {leg.foot, leg.planted}) {
-      const double rest = targetRest_[at(driven_[at(d)].target)].translation_m.y();
-      lowest = std::min(lowest, target(d).translation_m.y() - rest);
-    }
-  }
-  return lowest;
-}
-
-// Feet to the rig's floor, the first frame to the rig's place. One frame in twenty may lie lower:
-// captures have outliers.
-void Retargeter::settleStart() {
-  if (!options_.startAtRig) return;
-  std::vector<double> lowest;
+// Heights of the feet above where they stand in the bind pose, while they stand: of the planted
+// joint when it hardly moves from one frame to the next.
+std::vector<double> Retargeter::standingHeights() {
+  const double slow_m = kStanding_legs_per_s * legLength(targetRest_, true) / 2 /
+                        std::max(1.0, source_.motion.rate_hz);
+  const std::vector<DrivenLeg> legs = legsOf(driven_);
+  std::vector<Vec3> before(legs.size());
+  std::vector<double> heights;
   for (std::size_t f = firstFrame_; f < source_.motion.frameCount(); ++f) {
     poseFrame(f);
-    if (f == firstFrame_) {
-      const Vec3 rest = targetRest_[at(driven_[at(root_)].target)].translation_m;
-      const Vec3 shift = rest - target(root_).translation_m;
-      start_m_ += shift;
-      poseFrame(f);
+    for (std::size_t l = 0; l < legs.size(); ++l) {
+      const int ball = legs[l].planted;
+      const Vec3 now = target(ball).translation_m;
+      const double rest = targetRest_[at(driven_[at(ball)].target)].translation_m.y();
+      if (f > firstFrame_ && (now - before[l]).norm() < slow_m) heights.push_back(now.y() - rest);
+      before[l] = now;
     }
-    const double low = lowestFoot();
-    if (low < 1e299) lowest.push_back(low);
   }
-  if (lowest.empty()) return;
-  const auto nth = lowest.begin() + static_cast<std::ptrdiff_t>(lowest.size() / 20);
-  std::nth_element(lowest.begin(), nth, lowest.end());
-  start_m_.y() -= *nth;
+  return heights;
+}
+
+void Retargeter::settleStart() {
+  if (!options_.startAtRig) return;
+  poseFrame(firstFrame_);
+  start_m_ +=
+      targetRest_[at(driven_[at(root_)].target)].translation_m - target(root_).translation_m;
+  std::vector<double> heights = standingHeights();
+  if (heights.empty()) return;
+  // The median: a foot that rests on something, or rolls over its toes, does not lift the figure.
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  start_m_.y() -= *middle;
 }
 
 void Retargeter::append(SampledMotion& out) const {

@@ -17,8 +17,8 @@ enum class SourceRest {
 
 struct RetargetOptions {
   SourceRest rest = SourceRest::automatic;
-  // The figure starts where the rig stands, and its lowest foot touches the rig's floor. Otherwise
-  // its path is the recorded one, scaled.
+  // The figure starts where the rig stands, and its standing feet are as high as the rig's.
+  // Otherwise its path is the recorded one, scaled.
   bool startAtRig = true;
   // Legs bend a little so that feet stand where the recorded ones stood: proportions differ, and
   // directions alone let the feet slide.
