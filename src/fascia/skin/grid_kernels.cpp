@@ -160,8 +160,7 @@ void gridNormalsImpl(const GridLayout& g, const VectorArray& position, int rowBe
       // would be exact; the border of a sheet is pinned or rarely touches anything.
       const V3 u = r.at(row + i + 1) - r.at(row + i - 1);
       const V3 w = r.at(high + i) - r.at(low + i);
-      const V3 n{hn::MulSub(u.y, w.z, hn::Mul(u.z, w.y)), hn::MulSub(u.z, w.x, hn::Mul(u.x, w.z)),
-                 hn::MulSub(u.x, w.y, hn::Mul(u.y, w.x))};
+      const V3 n = cross(u, w);
       const V squared = dot(n, n);
       const V inverse = hn::IfThenElseZero(hn::Gt(squared, hn::Set(d, 1e-30f)),
                                            inverseRoot(hn::Max(squared, hn::Set(d, 1e-30f))));

@@ -10,6 +10,7 @@
 #define HWY_TARGET_INCLUDE "fascia/skin/mesh_kernels.cpp"
 #include <hwy/foreach_target.h>
 
+#include <fascia/field/kernel_math-inl.h>
 #include <fascia/skin/point_step-inl.h>
 #include <fascia/skin/quads-inl.h>
 
@@ -23,40 +24,95 @@ std::size_t lanesImpl() {
   return hn::Lanes(D());
 }
 
-// Forces on the corners of the chunk's triangles, to scratch. Formulas at TriangleMembrane; with
-// t = |x|² − 1 = 2E the stress along x is (K/2) t x.
-HWY_INLINE void triangleForces(const MeshLayout& layout, const MeshLayout::Chunk& chunk,
-                               const float* quads, float* scratch) {
+// A batch of triangles' forces on their corners. Formulas at TriangleMembrane; with t = |x|² − 1 =
+// 2E the stress along x is (K/2) t x.
+HWY_INLINE void triangleForces(const std::uint32_t* corners, const float* coefficients, float cap,
+                               const float* quads, float* out) {
   const D d;
-  const std::size_t lanes = hn::Lanes(d);
-  const V cap = hn::Set(d, layout.cap), one = hn::Set(d, 1.f);
-  const std::uint32_t* corners = layout.corners.data() + std::size_t{chunk.firstBatch} * 3 * kBatch;
-  const float* coefficients = layout.coefficients.data() +
-                              std::size_t{chunk.firstBatch} * MeshLayout::kTriangleFloats * kBatch;
-  float* out = scratch + MeshLayout::kScratchHead;
-  for (std::size_t b = 0; b < chunk.batchCount; ++b) {
-    for (std::size_t l = 0; l < kBatch; l += lanes) {
-      const auto load = [&](std::size_t q)
-                            HWY_ATTR { return hn::Load(d, coefficients + q * kBatch + l); };
-      const V3 origin = loadQuads(quads, corners + l);
-      const V3 e1 = loadQuads(quads, corners + kBatch + l) - origin;
-      const V3 e2 = loadQuads(quads, corners + 2 * kBatch + l) - origin;
-      const V u1 = load(0), u2 = load(1), v1 = load(2), v2 = load(3);
-      const V3 xu = mulAdd(u1, e1, scaled(u2, e2)), xv = mulAdd(v1, e1, scaled(v2, e2));
-      const V su = hn::Mul(load(4), clampAbs(hn::Sub(dot(xu, xu), one), cap));
-      const V sv = hn::Mul(load(5), clampAbs(hn::Sub(dot(xv, xv), one), cap));
-      const V shear = hn::Mul(load(6), clampAbs(dot(xu, xv), cap));
-      const V3 pu = mulAdd(su, xu, scaled(shear, xv)), pv = mulAdd(sv, xv, scaled(shear, xu));
-      const V3 pull1 = mulAdd(u1, pu, scaled(v1, pv)), pull2 = mulAdd(u2, pu, scaled(v2, pv));
-      const V minus = hn::Set(d, -1.f);
-      storeQuads(pull1 + pull2, out + l * MeshLayout::kQuad);
-      storeQuads(scaled(minus, pull1), out + (kBatch + l) * MeshLayout::kQuad);
-      storeQuads(scaled(minus, pull2), out + (2 * kBatch + l) * MeshLayout::kQuad);
-    }
-    corners += 3 * kBatch;
-    coefficients += MeshLayout::kTriangleFloats * kBatch;
-    out += 3 * kBatch * MeshLayout::kQuad;
+  const V limit = hn::Set(d, cap), one = hn::Set(d, 1.f), minus = hn::Set(d, -1.f);
+  for (std::size_t l = 0; l < kBatch; l += hn::Lanes(d)) {
+    const auto coefficient = [&](std::size_t q)
+                                 HWY_ATTR { return hn::Load(d, coefficients + q * kBatch + l); };
+    const V3 origin = loadQuads(quads, corners + l);
+    const V3 e1 = loadQuads(quads, corners + kBatch + l) - origin;
+    const V3 e2 = loadQuads(quads, corners + 2 * kBatch + l) - origin;
+    const V u1 = coefficient(0), u2 = coefficient(1), v1 = coefficient(2), v2 = coefficient(3);
+    const V3 xu = mulAdd(u1, e1, scaled(u2, e2)), xv = mulAdd(v1, e1, scaled(v2, e2));
+    const V su = hn::Mul(coefficient(4), clampAbs(hn::Sub(dot(xu, xu), one), limit));
+    const V sv = hn::Mul(coefficient(5), clampAbs(hn::Sub(dot(xv, xv), one), limit));
+    const V shear = hn::Mul(coefficient(6), clampAbs(dot(xu, xv), limit));
+    const V3 pu = mulAdd(su, xu, scaled(shear, xv)), pv = mulAdd(sv, xv, scaled(shear, xu));
+    const V3 pull1 = mulAdd(u1, pu, scaled(v1, pv)), pull2 = mulAdd(u2, pu, scaled(v2, pv));
+    storeQuads(pull1 + pull2, out + l * MeshLayout::kQuad);
+    storeQuads(scaled(minus, pull1), out + (kBatch + l) * MeshLayout::kQuad);
+    storeQuads(scaled(minus, pull2), out + (2 * kBatch + l) * MeshLayout::kQuad);
   }
+}
+
+// A batch of hinges' forces on their corners, the gradient as in hinge_bending.cpp. Each division
+// by a square that may vanish has a floor; the force fades by the same factor on both sides, so
+// that it never has a torque.
+HWY_INLINE void hingeForces(const std::uint32_t* corners, const float* coefficients,
+                            const float* quads, float* out) {
+  const D d;
+  const V minus = hn::Set(d, -1.f);
+  for (std::size_t l = 0; l < kBatch; l += hn::Lanes(d)) {
+    const auto coefficient = [&](std::size_t q)
+                                 HWY_ATTR { return hn::Load(d, coefficients + q * kBatch + l); };
+    const auto inverse = [&](V square, V floor)
+                             HWY_ATTR { return reciprocal(d, hn::Max(square, floor)); };
+    const V3 p0 = loadQuads(quads, corners + l);
+    const V3 e = loadQuads(quads, corners + kBatch + l) - p0;
+    const V3 to1 = loadQuads(quads, corners + 2 * kBatch + l) - p0;
+    const V3 to2 = loadQuads(quads, corners + 3 * kBatch + l) - p0;
+    const V3 n1 = cross(e, to1), n2 = cross(to2, e);
+    const V square1 = dot(n1, n1), square2 = dot(n2, n2), squareE = dot(e, e);
+    const V inverse1 = inverse(square1, coefficient(3));
+    const V inverse2 = inverse(square2, coefficient(4));
+    const V inverseE = inverse(squareE, coefficient(5));
+    const V length = hn::Sqrt(squareE);
+    const V cosine = dot(n1, n2), sine = hn::Neg(hn::Mul(length, dot(n1, to2)));
+    const V restCosine = coefficient(1), restSine = coefficient(2);
+    const V angle = atan2(d, hn::MulSub(sine, restCosine, hn::Mul(cosine, restSine)),
+                          hn::MulAdd(cosine, restCosine, hn::Mul(sine, restSine)));
+    const V fade = hn::Mul(hn::Mul(hn::Mul(square1, inverse1), hn::Mul(square2, inverse2)),
+                           hn::Mul(squareE, inverseE));
+    const V moment = hn::Mul(hn::Mul(coefficient(0), angle), hn::Mul(fade, length));
+    const V3 f2 = scaled(hn::Mul(moment, inverse1), n1);
+    const V3 f3 = scaled(hn::Mul(moment, inverse2), n2);
+    const V share1 = hn::Mul(dot(to1, e), inverseE), share2 = hn::Mul(dot(to2, e), inverseE);
+    const V3 pull1 = mulAdd(share1, f2, scaled(share2, f3));
+    storeQuads(pull1 - (f2 + f3), out + l * MeshLayout::kQuad);
+    storeQuads(scaled(minus, pull1), out + (kBatch + l) * MeshLayout::kQuad);
+    storeQuads(f2, out + (2 * kBatch + l) * MeshLayout::kQuad);
+    storeQuads(f3, out + (3 * kBatch + l) * MeshLayout::kQuad);
+  }
+}
+
+// Calls forces(corners, coefficients, out) for every batch; returns the end of their corner forces.
+template <std::size_t kCorners, std::size_t kFloats, class Forces>
+HWY_INLINE float* forEachBatch(const MeshLayout::Elements& elements, MeshLayout::Range batches,
+                               float* out, const Forces& forces) {
+  for (std::size_t b = batches.first; b < std::size_t{batches.first} + batches.count; ++b) {
+    forces(elements.corners.data() + b * kCorners * kBatch,
+           elements.coefficients.data() + b * kFloats * kBatch, out);
+    out += kCorners * kBatch * MeshLayout::kQuad;
+  }
+  return out;
+}
+
+// Forces on the corners of the chunk's elements, to scratch.
+HWY_INLINE void cornerForces(const MeshLayout& layout, const MeshLayout::Chunk& chunk,
+                             const float* quads, float* scratch) {
+  float* out = scratch + MeshLayout::kScratchHead;
+  out = forEachBatch<MeshLayout::kTriangleCorners, MeshLayout::kTriangleFloats>(
+      layout.triangles, chunk.triangles, out,
+      [&](const std::uint32_t* corners, const float* coefficients, float* forces)
+          HWY_ATTR { triangleForces(corners, coefficients, layout.cap, quads, forces); });
+  forEachBatch<MeshLayout::kHingeCorners, MeshLayout::kHingeFloats>(
+      layout.hinges, chunk.hinges, out,
+      [&](const std::uint32_t* corners, const float* coefficients, float* forces)
+          HWY_ATTR { hingeForces(corners, coefficients, quads, forces); });
 }
 
 // Calls apply(k, force) for every vector of the chunk's points k….
@@ -68,8 +124,8 @@ HWY_INLINE void forEachForce(const MeshLayout& layout, const MeshLayout::Chunk& 
   constexpr std::size_t kGroup = 4 * kBatch;
   alignas(64) float sums[kGroup * MeshLayout::kQuad];
   const D d;
-  const std::size_t end = chunk.firstPoint + chunk.pointCount;
-  for (std::size_t group = chunk.firstPoint; group < end; group += kGroup) {
+  const std::size_t end = std::size_t{chunk.points.first} + chunk.points.count;
+  for (std::size_t group = chunk.points.first; group < end; group += kGroup) {
     const std::size_t stop = std::min(group + kGroup, end);
     for (std::size_t k = group; k < stop; k += kBatch) {
       const std::uint32_t first = layout.sliceFirst[k / kBatch];
@@ -92,7 +148,7 @@ void toQuadsImpl(const VectorArray& position, std::size_t count, float* quads) {
 void stepChunkImpl(const MeshLayout& layout, const MeshLayout::Chunk& chunk,
                    const StepInputs& inputs, float time_s, const float* quads, float* nextQuads,
                    float* scratch, VectorArray& position, VectorArray& velocity) {
-  triangleForces(layout, chunk, quads, scratch);
+  cornerForces(layout, chunk, quads, scratch);
   const PointStep step{inputs, time_s};
   const MutablePointers r = pointers(position), v = pointers(velocity);
   forEachForce(layout, chunk, scratch, [&](std::size_t k, V3 force) HWY_ATTR {
@@ -102,7 +158,7 @@ void stepChunkImpl(const MeshLayout& layout, const MeshLayout::Chunk& chunk,
 
 void chunkForcesImpl(const MeshLayout& layout, const MeshLayout::Chunk& chunk, const float* quads,
                      float* scratch, VectorArray& force) {
-  triangleForces(layout, chunk, quads, scratch);
+  cornerForces(layout, chunk, quads, scratch);
   const MutablePointers out = pointers(force);
   forEachForce(layout, chunk, scratch, [&](std::size_t k, V3 f) HWY_ATTR { out.set(k, f); });
 }

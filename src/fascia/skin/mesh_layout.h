@@ -20,23 +20,30 @@ namespace fascia {
 // A chunk is a range of points with all triangles that touch it: small enough for the cache, and
 // independent of the others within a step. Triangles across a border are computed in both chunks.
 struct MeshLayout {
-  static constexpr std::size_t kBatch = 16;  // triangles or points; the widest vector
+  static constexpr std::size_t kBatch = 16;  // elements or points; the widest vector
   static constexpr std::size_t kQuad = 4;    // floats per position or force
-  static constexpr std::size_t kTriangleFloats = 7;
   // Floats before the first corner force in scratch; the first four are the zero of missing
   // corners.
   static constexpr std::size_t kScratchHead = 16;
 
+  struct Range {
+    std::uint32_t first = 0, count = 0;
+  };
   struct Chunk {
-    std::uint32_t firstPoint, pointCount;  // multiples of kBatch
-    std::uint32_t firstBatch, batchCount;
+    Range points;             // multiples of kBatch
+    Range triangles, hinges;  // in batches
+  };
+  // Triangles or hinges in batches.
+  struct Elements {
+    std::vector<std::uint32_t> corners;  // per batch, corner and element: offset of its quad
+    FloatArray coefficients;             // per batch, coefficient and element
   };
 
   std::vector<Chunk> chunks;
-  // Per batch, corner and triangle: offset of the corner's quad.
-  std::vector<std::uint32_t> corners;
-  // Per batch: u[0], u[1], v[0], v[1], stretch_u / 2, stretch_v / 2, shear of the triangles.
-  FloatArray coefficients;
+  Elements triangles;  // coefficients u[0], u[1], v[0], v[1], stretch_u / 2, stretch_v / 2, shear
+  Elements hinges;     // stiffness, restCosine, restSine, floor1, floor2, floorEdge
+  static constexpr std::size_t kTriangleCorners = 3, kTriangleFloats = 7;
+  static constexpr std::size_t kHingeCorners = 4, kHingeFloats = 6;
   // Per slice of kBatch points: where in `places` it begins, one more at the end. A slice has for
   // each of its points the same number of offsets into scratch.
   std::vector<std::uint32_t> sliceFirst, places;

@@ -34,6 +34,10 @@ HWY_INLINE V3 mulAdd(V s, V3 a, V3 b) {
 HWY_INLINE V dot(V3 a, V3 b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
+HWY_INLINE V3 cross(V3 a, V3 b) {
+  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
 template <class M>
 HWY_INLINE V3 select(M mask, V3 yes, V3 no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace fascia {
 namespace {
@@ -11,6 +10,7 @@ using Triangle = TriangleMembrane::Triangle;
 
 // Triangles flatter than this share of their longest edge have no direction to hold on to.
 constexpr double kFlattest = 1e-5;
+constexpr double kShortest_m2 = 1e-12;  // squared longest edge of a triangle that counts
 // A sliver's stiffness against its own height grows with length over height. It would ask for short
 // steps of the whole skin, so it grows no further than at this height over length.
 constexpr double kSliver = 0.1;
@@ -97,48 +97,74 @@ std::array<double, 3> stiffnessOf(const Triangle& t, double cap) {
   return largest;
 }
 
+// A rest triangle's edges from corner 0, and how much of it there is.
+struct RestShape {
+  Vec3 e1, e2, cross;
+  double lengths[3], longest;  // squared, of the edges 01, 02 and 12
+  double flatness;             // height over longest edge
+
+  RestShape(const TriangleMembrane::Corners& c, const VectorArray& rest) {
+    const Vec3 origin = pointAt(rest, c[0]);
+    e1 = pointAt(rest, c[1]) - origin, e2 = pointAt(rest, c[2]) - origin;
+    cross = e1.cross(e2);
+    lengths[0] = e1.squaredNorm(), lengths[1] = e2.squaredNorm();
+    lengths[2] = (e2 - e1).squaredNorm();
+    longest = std::max({lengths[0], lengths[1], lengths[2]});
+    flatness = cross.norm() / longest;
+  }
+  double area() const { return 0.5 * cross.norm(); }
+  bool isDegenerate() const { return !(flatness > kFlattest) || longest < kShortest_m2; }
+};
+
+Triangle makeTriangle(const TriangleMembrane::Corners& c, const RestShape& shape,
+                      const Vec3& wanted, const TriangleMaterial& m) {
+  const auto mean = [&](const FloatArray& a) { return (a[c[0]] + a[c[1]] + a[c[2]]) / 3.0; };
+  const Vec3 normal = shape.cross.normalized();
+  const Vec3 u = directionInPlane(wanted, normal, shape.e1), v = normal.cross(u);
+  // Inverse of the relaxed edges' matrix (e1 e2)/prestretch in the axes u and v.
+  const double inverse = mean(m.prestretch) / shape.cross.norm();
+  Triangle t{};
+  t.corners = c;
+  t.u[0] = static_cast<float>(inverse * shape.e2.dot(v));
+  t.u[1] = static_cast<float>(-inverse * shape.e1.dot(v));
+  t.v[0] = static_cast<float>(-inverse * shape.e2.dot(u));
+  t.v[1] = static_cast<float>(inverse * shape.e1.dot(u));
+  const double weight = shape.area() * std::min(1.0, shape.flatness / kSliver);
+  t.stretch_u = static_cast<float>(weight * mean(m.stretch_u));
+  t.stretch_v = static_cast<float>(weight * mean(m.stretch_v));
+  t.shear = static_cast<float>(weight * mean(m.shear));
+  for (int k = 0; k < 3; ++k) t.inverseRest[k] = static_cast<float>(1 / shape.lengths[k]);
+  return t;
+}
+
 }  // namespace
 
 TriangleMembrane::TriangleMembrane(std::span<const Corners> triangles, const VectorArray& rest,
                                    const TriangleMaterial& m)
     : bound_(rest.size(), 0.f), areas_(rest.size(), 0.f), cap_(m.max_stretch * m.max_stretch - 1) {
   triangles_.reserve(triangles.size());
+  std::vector<Corners> kept;
+  std::vector<double> bound(rest.size(), 0.0), areas(rest.size(), 0.0);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const Corners& c = triangles[i];
-    const Vec3 origin = pointAt(rest, c[0]);
-    const Vec3 e1 = pointAt(rest, c[1]) - origin, e2 = pointAt(rest, c[2]) - origin;
-    const Vec3 cross = e1.cross(e2);
-    const double lengths[3] = {e1.squaredNorm(), e2.squaredNorm(), (e2 - e1).squaredNorm()};
-    const double longest = *std::max_element(lengths, lengths + 3);
-    const double flatness = cross.norm() / longest;  // height over longest edge
-    if (!(flatness > kFlattest) || longest < 1e-12) continue;
-    const double area = 0.5 * cross.norm();
-    const auto mean = [&](const FloatArray& a) { return (a[c[0]] + a[c[1]] + a[c[2]]) / 3.0; };
-    const Vec3 normal = cross.normalized();
-    const Vec3 u =
-        m.u.empty() ? e1.normalized() : directionInPlane(m.u[i].cast<double>(), normal, e1);
-    const Vec3 v = normal.cross(u);
-    const double relaxed = 1 / mean(m.prestretch);
-    const double determinant = 2 * area * relaxed;  // of (e1 e2) in u and v, over one relaxation
-    Triangle t{};
-    t.corners = c;
-    t.u[0] = static_cast<float>(e2.dot(v) / determinant);
-    t.u[1] = static_cast<float>(-e1.dot(v) / determinant);
-    t.v[0] = static_cast<float>(-e2.dot(u) / determinant);
-    t.v[1] = static_cast<float>(e1.dot(u) / determinant);
-    const double weight = area * std::min(1.0, flatness / kSliver);
-    t.stretch_u = static_cast<float>(weight * mean(m.stretch_u));
-    t.stretch_v = static_cast<float>(weight * mean(m.stretch_v));
-    t.shear = static_cast<float>(weight * mean(m.shear));
-    for (int k = 0; k < 3; ++k)
-      t.inverseRest[k] = static_cast<float>(1 / std::max(lengths[k], 1e-6 * longest));
-    const std::array<double, 3> stiffness = stiffnessOf(t, cap_);
+    const RestShape shape(triangles[i], rest);
+    if (shape.isDegenerate()) continue;
+    const Vec3 wanted = m.u.empty() ? shape.e1 : m.u[i].cast<double>();
+    kept.push_back(triangles[i]);
+    triangles_.push_back(makeTriangle(triangles[i], shape, wanted, m));
+    const std::array<double, 3> stiffness = stiffnessOf(triangles_.back(), cap_);
     for (std::size_t k = 0; k < 3; ++k) {
-      areas_[c[k]] += static_cast<float>(area / 3);
-      bound_[c[k]] += static_cast<float>(stiffness[k]);
+      areas[triangles[i][k]] += shape.area() / 3;
+      bound[triangles[i][k]] += stiffness[k];
     }
-    triangles_.push_back(t);
   }
+  hinges_ = makeHinges(kept, rest, m.bending);
+  for (const Hinge& hinge : hinges_) {
+    const std::array<double, 4> stiffness = hingeStiffness(hinge, rest);
+    for (std::size_t k = 0; k < 4; ++k) bound[hinge.corners[k]] += stiffness[k];
+  }
+  const auto toFloat = [](double x) { return static_cast<float>(x); };
+  std::transform(bound.begin(), bound.end(), bound_.begin(), toFloat);
+  std::transform(areas.begin(), areas.end(), areas_.begin(), toFloat);
 }
 
 double TriangleMembrane::energy(const VectorArray& r) const {
@@ -149,6 +175,7 @@ double TriangleMembrane::energy(const VectorArray& r) const {
              t.stretch_v * plateauEnergy(s.strain_v(), 0.5 * cap_) +
              t.shear * plateauEnergy(s.shear(), cap_);
   }
+  for (const Hinge& hinge : hinges_) total += hingeEnergy(hinge, r);
   return total;
 }
 
@@ -198,6 +225,7 @@ void TriangleMembrane::addForceJacobian(const VectorArray& r, bool definite,
       }
     }
   }
+  for (const Hinge& hinge : hinges_) addHingeJacobian(hinge, r, entries);
 }
 
 }  // namespace fascia

@@ -9,6 +9,7 @@
 
 #include <fascia/base/aligned.h>
 #include <fascia/math/types.h>
+#include <fascia/skin/hinge_bending.h>
 
 namespace fascia {
 
@@ -29,7 +30,8 @@ struct TriangleMaterial {
 //   ε = Σ_triangles A · ½ [K_u E_uu² + K_v E_vv² + S (2 E_uv)²],   isotropic where K_u = K_v = 2 S.
 //
 // Small strains cost the same as on ElasticGrid. The force is exactly −∂ε/∂r. As on the grid, each
-// of the three stresses stays constant where its strain is beyond what max_stretch gives.
+// of the three stresses stays constant where its strain is beyond what max_stretch gives. Bending
+// is added as Hinge.
 class TriangleMembrane {
  public:
   using Corners = std::array<std::uint32_t, 3>;
@@ -47,7 +49,7 @@ class TriangleMembrane {
   void addForceJacobian(const VectorArray& position, bool definite,
                         std::vector<Eigen::Triplet<double>>& entries) const;
   // K with −∂f/∂r ≼ diag(K) for every posture within max_stretch, N/m: what explicit steps must
-  // resolve.
+  // resolve. Of bending only the positive part counts, see hingeStiffness.
   const FloatArray& stiffnessBound() const { return bound_; }
   double maxStretch(const VectorArray& position) const;    // edge length over rest length
   const FloatArray& pointAreas() const { return areas_; }  // rest area of each point, m²
@@ -60,10 +62,12 @@ class TriangleMembrane {
     float inverseRest[3];  // 1/m² per squared length of the edges 01, 02 and 12 in the rest shape
   };
   const std::vector<Triangle>& triangles() const { return triangles_; }  // those with stiffness
+  const std::vector<Hinge>& hinges() const { return hinges_; }           // if it bends
   float cap() const { return cap_; }  // plateau of |x_u|² − 1: max_stretch² − 1
 
  private:
   std::vector<Triangle> triangles_;
+  std::vector<Hinge> hinges_;
   FloatArray bound_, areas_;
   float cap_ = 1;
 };
