@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include <fascia/base/error.h>
+#include <fascia/io/makehuman_import.h>
 #include <fascia/io/rig_gltf.h>
 
 namespace fascia {
@@ -32,6 +33,7 @@ RiggedModel readRiggedModel(const std::string& path, const RigImportOptions& opt
   if (ending == ".glb" || ending == ".gltf" || ending == ".vrm") {
     return rigFromGltf(GltfDocument::read(path), options);
   }
+  if (isMakeHuman(path)) return readMakeHuman(path, options);
   issue.message = "has the ending \"" + ending + "\", which Fascia can't read a character from";
   issue.hint = "export it as .glb";
   throw Error(std::move(issue));
