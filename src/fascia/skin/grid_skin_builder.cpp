@@ -26,6 +26,17 @@ void forEachPoint(const GridLayout& g, const Visit& visit) {
     for (int i = 0; i < g.columns; ++i) visit(i, j, g.at(i, j));
 }
 
+std::vector<std::array<std::uint32_t, 3>> cellTriangles(const GridLayout& g) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(g.at(g.wrapped(i), j)); };
+  for (int j = 0; j + 1 < g.rows; ++j)
+    for (int i = 0; i < g.columns; ++i) {
+      triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return triangles;
+}
+
 }  // namespace
 
 void GridSkinBuilder::build() {
@@ -65,11 +76,10 @@ bool GridSkinBuilder::checkPoints() const {
   const SkinPointsDef& p = *def_.points;
   if (p.columns < kMinSide || p.columns > kMaxSide || p.rows < kMinSide || p.rows > kMaxSide) {
     report_.error("/points/grid", "found a grid of " + std::to_string(p.columns) + " x " +
-                              std::to_string(p.rows) + ", expected sides from 8 to 4096");
+                                      std::to_string(p.rows) + ", expected sides from 8 to 4096");
     return false;
   }
-  const std::size_t count =
-      static_cast<std::size_t>(p.columns) * static_cast<std::size_t>(p.rows);
+  const std::size_t count = static_cast<std::size_t>(p.columns) * static_cast<std::size_t>(p.rows);
   bool ok = report_.checkPointLists(p, count, "columns x rows");
   const auto check = [&](std::size_t size, const char* name) {
     if (size == 0 || size == count) return;
@@ -82,7 +92,8 @@ bool GridSkinBuilder::checkPoints() const {
   check(p.anchor.size(), "anchor");
   check(p.rest_position_m.size(), "rest_position_m");
   if (p.anchor.size() != p.anchor_solid.size()) {
-    report_.error("/points/anchor", "found anchors without their solids", "give both lists or none");
+    report_.error("/points/anchor", "found anchors without their solids",
+                  "give both lists or none");
     ok = false;
   }
   const auto finite = [](const std::array<float, 3>& v) {
@@ -95,8 +106,9 @@ bool GridSkinBuilder::checkPoints() const {
   }
   for (const int s : p.anchor_solid) {
     if (s >= -1 && s < static_cast<int>(base_.flesh.solidCount())) continue;
-    report_.error("/points/anchor_solid", "found solid number " + std::to_string(s) + ", there are " +
-                                      std::to_string(base_.flesh.solidCount()));
+    report_.error("/points/anchor_solid", "found solid number " + std::to_string(s) +
+                                              ", there are " +
+                                              std::to_string(base_.flesh.solidCount()));
     return false;
   }
   return ok;
@@ -130,7 +142,7 @@ bool GridSkinBuilder::findEnds(EndRing& bottom, EndRing& top) {
     rings[e]->radius_m = ends[e]->radius_m > 0 ? ends[e]->radius_m : kEndRadius * length;
     if (rings[e]->radius_m > 1e-6) continue;
     report_.error(e == 0 ? "/bottom" : "/top", "found both ends of the skin in the same place",
-          "fix the ends to different joints, or give them different axes");
+                  "fix the ends to different joints, or give them different axes");
     return false;
   }
   return true;
@@ -149,8 +161,7 @@ void GridSkinBuilder::makeRestShape(const EndRing& bottom, const EndRing& top) {
     fillPads(saved, r);
     skin_.rest_ = sameGrid() ? r : resample(saved, r, g);
   } else {
-    skin_.rest_ =
-        shrinkWrap(base_.posedFlesh, g, bottom, top, {def_.fat.thickness_m, def_.cling});
+    skin_.rest_ = shrinkWrap(base_.posedFlesh, g, bottom, top, {def_.fat.thickness_m, def_.cling});
   }
   Box box;
   forEachPoint(layout_, [&](int, int, std::size_t k) { box.add(pointAt(skin_.rest_, k)); });
@@ -235,8 +246,8 @@ Vec3 GridSkinBuilder::alongNormal(const Vec3& from, const Vec3& normal, SolidId&
 
 void GridSkinBuilder::overrideAnchor(int i, int j, TissueAnchors::Anchor& anchor) const {
   for (const SkinAnchorDef& a : def_.anchors) {
-    const int column = layout_.wrapped(
-        static_cast<int>(std::lround(a.u * layout_.columns)) % layout_.columns);
+    const int column =
+        layout_.wrapped(static_cast<int>(std::lround(a.u * layout_.columns)) % layout_.columns);
     const int row = static_cast<int>(std::lround(a.v * (layout_.rows - 1)));
     if (column != i || row != j) continue;
     anchor.solid = base_.flesh.find(a.solid);
@@ -284,16 +295,19 @@ void GridSkinBuilder::makeModel() {
   std::vector<std::size_t> points, tied;
   forEachPoint(g, [&](int, int, std::size_t k) { points.push_back(k); });
   for (const TissueAnchors::Anchor& a : skin_.anchors_.anchors()) tied.push_back(a.point);
-  skin_.points_ = makePointModel(
-      {q, pointAreas(g, skin_.rest_), stiffness,
-       1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(g.pointCount()), points,
-       skin_.fixedPoints_, tied});
+  skin_.points_ =
+      makePointModel({q, pointAreas(g, skin_.rest_), stiffness,
+                      1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(g.pointCount()),
+                      points, skin_.fixedPoints_, tied});
   for (int j = 1; j + 1 < g.rows; ++j)
     for (int i = 0; i < g.columns; i += static_cast<int>(PointBlock::kCapacity))
       skin_.blocks_.push_back(
           {g.at(i, j), std::min<std::uint32_t>(PointBlock::kCapacity,
                                                static_cast<std::uint32_t>(g.columns - i))});
   skin_.defaultStep_s_ = longestStep(skin_.points_, kAddedMassShare);
+  if (def_.contact.self)
+    skin_.selfContact_ = std::make_shared<SelfContactModel>(prepareSelfContact(
+        cellTriangles(g), skin_.rest_, skin_.blocks_, static_cast<float>(def_.contact.gap_m)));
 }
 
 void GridSkinBuilder::fixEnds() {
@@ -320,8 +334,7 @@ void GridSkinBuilder::makeCoarse() {
   coarse->size_m_ = skin_.size_m_;
   coarse->rest_ = resample(layout_, skin_.rest_, g);
   for (const QuantityInfo& i : quantityInfos())
-    coarse->quantities_[i.quantity] =
-        resample(layout_, skin_.quantities_[i.quantity], g);
+    coarse->quantities_[i.quantity] = resample(layout_, skin_.quantities_[i.quantity], g);
   builder.joint_[0] = joint_[0];
   builder.joint_[1] = joint_[1];
   builder.placeCarriers();

@@ -13,7 +13,8 @@ namespace fascia {
 namespace {
 
 // A mesh is as fine as its author wanted, fingers and faces finest. Steps of this length follow
-// whatever one sees; points that would need shorter ones get added mass and move with their anchors.
+// whatever one sees; points that would need shorter ones get added mass and move with their
+// anchors.
 constexpr double kStep_s = 1.0 / 480;
 // A point farther from all flesh than this share of the model's size has none beneath it.
 constexpr double kBare = 0.06;
@@ -197,9 +198,9 @@ void MeshSkinBuilder::orderPoints() {
 
 void MeshSkinBuilder::makeRestShape() {
   // Kernels read whole vectors, one beyond the last.
-  const std::size_t storage = (order_.size() + GridLayout::kPad - 1) / GridLayout::kPad *
-                                  GridLayout::kPad +
-                              GridLayout::kPad;
+  const std::size_t storage =
+      (order_.size() + GridLayout::kPad - 1) / GridLayout::kPad * GridLayout::kPad +
+      GridLayout::kPad;
   skin_.rest_.resize(storage);
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const Eigen::Vector3f& p = rig_.points_m[order_[k]];
@@ -226,7 +227,8 @@ void MeshSkinBuilder::setQuantities() {
         covered_[p] ? std::clamp<double>(gap_[p], 1e-9, def_.fat.thickness_m) : 1e-9;
     const double thin = usual / thickness;
     q[SkinQuantity::fat][k] = covered_[p] ? static_cast<float>(thickness) : 0.f;
-    q[SkinQuantity::tissue_stiffness][k] *= static_cast<float>(std::clamp(thin, kSoftest, kFirmest));
+    q[SkinQuantity::tissue_stiffness][k] *=
+        static_cast<float>(std::clamp(thin, kSoftest, kFirmest));
     q[SkinQuantity::density][k] *= static_cast<float>(std::clamp(1 / thin, kLightest, kHeaviest));
     q[SkinQuantity::tissue_rest_length][k] =
         static_cast<float>(def_.tissue.rest_length_m.value_or(0));
@@ -271,10 +273,10 @@ void MeshSkinBuilder::makeModel() {
   std::vector<std::size_t> points(order_.size());
   std::iota(points.begin(), points.end(), 0u);
   const std::span<const std::size_t> elastic = std::span(points).first(elasticCount_);
-  skin_.points_ = makePointModel(
-      {skin_.quantities_, membrane.pointAreas(), membrane.stiffnessBound(),
-       1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(order_.size()), points,
-       skin_.fixedPoints_, elastic});
+  skin_.points_ =
+      makePointModel({skin_.quantities_, membrane.pointAreas(), membrane.stiffnessBound(),
+                      1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(order_.size()),
+                      points, skin_.fixedPoints_, elastic});
   // What contact keeps: what pressing leaves of the fat, but never more than there is at rest.
   const auto kept = static_cast<float>(1 - def_.fat.compressible);
   for (std::size_t k = 0; k < order_.size(); ++k) {
@@ -282,6 +284,13 @@ void MeshSkinBuilder::makeModel() {
     skin_.points_.fat[k] = natural > 0 ? std::min(kept * skin_.points_.fat[k], natural) : natural;
   }
   skin_.defaultStep_s_ = kStep_s;
+  if (def_.contact.self) {
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (const auto& t : rig_.triangles)
+      triangles.push_back({storageOf_[t[0]], storageOf_[t[1]], storageOf_[t[2]]});
+    skin_.selfContact_ = std::make_shared<SelfContactModel>(prepareSelfContact(
+        triangles, skin_.rest_, skin_.blocks_, static_cast<float>(def_.contact.gap_m)));
+  }
 
   MeshTopology::Drawn drawn;
   for (const RigVertex& v : rig_.vertices) {

@@ -7,11 +7,10 @@ namespace {
 
 class MeshSurfaceStepper final : public SurfaceStepper {
  public:
-  explicit MeshSurfaceStepper(const TriangleMembrane& membrane)
-      : membrane_(membrane), stepper_(membrane) {}
+  explicit MeshSurfaceStepper(const TriangleMembrane& membrane) : stepper_(membrane) {}
 
   void forces(const VectorArray& position, VectorArray& force) override {
-    meshForces(membrane_, position, force);
+    stepper_.forces(position, force);
   }
   void run(const StepInputs& inputs, int steps, VectorArray& position,
            VectorArray& velocity) override {
@@ -19,7 +18,6 @@ class MeshSurfaceStepper final : public SurfaceStepper {
   }
 
  private:
-  const TriangleMembrane& membrane_;
   MeshStepper stepper_;
 };
 

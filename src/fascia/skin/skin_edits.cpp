@@ -41,8 +41,8 @@ double edited(const SkinRegionDef::Edit& edit, double old) {
 }  // namespace
 
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
-                    std::span<const EditPoint> points, bool hasCoordinates,
-                    const VectorArray& rest, SkinQuantities& quantities) {
+                    std::span<const EditPoint> points, bool hasCoordinates, const VectorArray& rest,
+                    SkinQuantities& quantities) {
   for (std::size_t n = 0; n < def.regions.size(); ++n) {
     const SkinRegionDef& region = def.regions[n];
     const std::string where = "/regions/" + std::to_string(n);

@@ -10,8 +10,7 @@ void SkinReport::error(const std::string& where, std::string message, std::strin
   diagnostics_.error(pointer_ + where, std::move(message), std::move(hint));
 }
 
-void SkinReport::checkRange(const std::string& where, double value, double low,
-                            double high) const {
+void SkinReport::checkRange(const std::string& where, double value, double low, double high) const {
   if (value >= low && value <= high) return;  // false for NaN
   error(where, "found " + std::to_string(value) + ", expected a number from " +
                    std::to_string(low) + " to " + std::to_string(high));
@@ -37,8 +36,7 @@ void SkinReport::checkValues(const SkinDef& def) const {
   checkRange("/material/restitution", def.material.restitution, 0, 1);
   checkRange("/cling", def.cling, 0, 1);
   for (std::size_t i = 0; i < def.brushes.size(); ++i)
-    checkRange("/brushes/" + std::to_string(i) + "/radius_m", def.brushes[i].radius_m, 1e-6,
-               1e6);
+    checkRange("/brushes/" + std::to_string(i) + "/radius_m", def.brushes[i].radius_m, 1e-6, 1e6);
   checkRange("/fat/compressible", def.fat.compressible, 0, 0.95);
   checkRange("/fat/bulk_Pa", def.fat.bulk_Pa, 0, 1e5);
   checkRange("/contact/gap_m", def.contact.gap_m, 1e-9, 1);
@@ -50,8 +48,8 @@ bool SkinReport::checkPointLists(const SkinPointsDef& p, std::size_t count,
   const auto check = [&](std::size_t size, std::string_view name) {
     if (size == 0 || size == count) return;
     error("/points/" + std::string(name), "found " + std::to_string(size) + " values, expected " +
-                                              std::to_string(count) +
-                                              " (" + expected + ") or none");
+                                              std::to_string(count) + " (" + expected +
+                                              ") or none");
     ok = false;
   };
   for (const QuantityInfo& i : quantityInfos()) {

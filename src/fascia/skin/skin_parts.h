@@ -50,8 +50,8 @@ struct EditPoint {
   SolidId solid;      // that the point is tied to; invalid: none
 };
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
-                    std::span<const EditPoint> points, bool hasCoordinates,
-                    const VectorArray& rest, SkinQuantities& quantities);
+                    std::span<const EditPoint> points, bool hasCoordinates, const VectorArray& rest,
+                    SkinQuantities& quantities);
 
 // Fills what stepping needs to know of the points from their quantities and areas (m²).
 // `tied`: storage indices of the points with a tissue strand.

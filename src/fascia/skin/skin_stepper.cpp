@@ -224,8 +224,9 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
                                         state.position, state.velocity, state.surroundings)
                                .maxSpeed_m_per_s;
   if (skin_->selfContact())
-    selfContact_.resolve(skin_->points(), reach, state.position, state.velocity,
-                         state.surroundings);
+    selfContact_.resolve(skin_->points(), 0.002f * static_cast<float>(skin_->size_m()),
+                         state.position, state.velocity, state.surroundings,
+                         static_cast<float>(duration_s));
   skin_->topology().complete(state.position);
 }
 
