@@ -79,13 +79,17 @@ std::vector<T> paddedTo4(std::span<const T> values, std::size_t components, std:
 
 std::span<const std::uint8_t> GltfDocument::viewBytes(int bufferView) const {
   const GltfPlace view = root()["bufferViews"].at(static_cast<std::size_t>(bufferView));
-  const int buffer = view["buffer"].index(static_cast<int>(buffers_.size()));
+  return part(view["buffer"].index(static_cast<int>(buffers_.size())), view);
+}
+
+// The bytes that "byteOffset" and "byteLength" at a place tell.
+std::span<const std::uint8_t> GltfDocument::part(int buffer, const GltfPlace& place) const {
   const std::vector<std::uint8_t>& bytes = buffers_[static_cast<std::size_t>(buffer)];
-  const std::size_t first = view["byteOffset"].countOr(0), length = view["byteLength"].count();
+  const std::size_t first = place["byteOffset"].countOr(0), length = place["byteLength"].count();
   if (first > bytes.size() || length > bytes.size() - first) {
-    view.fail("reaches byte " + std::to_string(first + length) + " of a buffer of " +
-                  std::to_string(bytes.size()),
-              "is the file cut short?");
+    place.fail("reaches byte " + std::to_string(first + length) + " of a buffer of " +
+                   std::to_string(bytes.size()),
+               "is the file cut short?");
   }
   return std::span(bytes).subspan(first, length);
 }
@@ -132,14 +136,16 @@ std::vector<std::uint8_t> GltfDocument::image(int image) const {
   }
 }
 
+int GltfDocument::addBuffer(std::vector<std::uint8_t> bytes) {
+  Json buffer{Json::Object{}};
+  buffer.set("byteLength", Json::Number{std::to_string(bytes.size())});
+  ensureList(json_, "buffers").list().push_back(std::move(buffer));
+  buffers_.push_back(std::move(bytes));
+  return static_cast<int>(buffers_.size()) - 1;
+}
+
 int GltfDocument::addView(const void* data, std::size_t bytes, int target, std::size_t stride) {
-  if (ownBuffer_ < 0) {
-    ownBuffer_ = static_cast<int>(buffers_.size());
-    buffers_.emplace_back();
-    Json buffer{Json::Object{}};
-    buffer.set("byteLength", 0);
-    ensureList(json_, "buffers").list().push_back(std::move(buffer));
-  }
+  if (ownBuffer_ < 0) ownBuffer_ = addBuffer({});
   std::vector<std::uint8_t>& own = buffers_[static_cast<std::size_t>(ownBuffer_)];
   own.resize((own.size() + 3) / 4 * 4);
   Json view{Json::Object{}};

@@ -55,7 +55,12 @@ class GltfDocument {
   void loadBuffers(std::string_view binaryChunk);
   void unpackCompressedViews();   // EXT_meshopt_compression
   void unpackCompressedMeshes();  // KHR_draco_mesh_compression
+  void unpackMesh(std::size_t mesh, std::size_t primitive);
+  void forgetExtension(std::string_view name);
+  void embedImages();
   std::vector<std::uint8_t> dataOf(const std::string& uri, const GltfPlace& place) const;
+  std::span<const std::uint8_t> part(int buffer, const GltfPlace& place) const;
+  int addBuffer(std::vector<std::uint8_t> bytes);
   int addView(const void* data, std::size_t bytes, int target, std::size_t stride = 0);
   int addAccessor(Json view, int componentType, std::size_t count, std::string_view type,
                   bool normalized);
