@@ -13,6 +13,7 @@ void addBake(CLI::App& program, Console& console);
 void addRender(CLI::App& program, Console& console);
 void addCheck(CLI::App& program, Console& console);
 void addInfo(CLI::App& program, Console& console);
+void addFlesh(CLI::App& program, Console& console);
 void addBench(CLI::App& program, Console& console);
 
 }  // namespace fascia

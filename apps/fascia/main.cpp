@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   fascia::addRender(program, console);
   fascia::addCheck(program, console);
   fascia::addInfo(program, console);
+  fascia::addFlesh(program, console);
   fascia::addBench(program, console);
   return run(program, console, argc, argv);
 }

@@ -57,7 +57,7 @@ TEST(SolidFitting, StaysUnderItsBounds) {
   // A wall within reach on one side.
   for (double t = -0.2; t <= 0.2; t += 0.02)
     target.bounds.push_back(
-        {known.world.translation_m + 0.03 * side + t * known.world.rotation.col(2), 0.002});
+        {known.world.translation_m + 0.03 * side + t * known.world.rotation.col(2), 0.002, 20});
   const FittedSolid fitted = fitSolid(target, known);
   std::vector<Vec3> wall;
   for (const auto& bound : target.bounds) wall.push_back(bound.position_m);

@@ -9,8 +9,9 @@ namespace fascia {
 namespace {
 
 constexpr double kLeastRoom = 1.5;    // local radius over the least fat, for flesh to fit beneath
-constexpr double kLeastBlend = 0.25;  // weight from which a neighbour's skin counts as shared
-constexpr std::size_t kMostReach = 500, kMostBounds = 700;
+constexpr double kLeastBlend = 0.05;  // weight from which a neighbour's skin counts as shared
+constexpr std::size_t kMostReach = 500, kMostBounds = 600;
+constexpr double kBoundWeight = 40;  // of all near skin together; that to be reached weighs 1
 
 template <class T>
 double quantile(std::vector<T> values, double share) {
@@ -76,11 +77,12 @@ Vec3 widestAcross(const BodyPart& part, const Vec3& centre) {
   return widest.norm() > 1e-6 ? Vec3(widest.normalized()) : part.axis.unitOrthogonal();
 }
 
-Vec3 centreOf(const BodyPart& part) {
+// Mean of the points half way through the body: on the axis even if the part is only a patch of it.
+Vec3 middleOf(const BodyPart& part) {
   Vec3 sum = Vec3::Zero();
   double area_m2 = 0;
   for (const SurfaceSample& s : part.own) {
-    sum += s.area_m2 * s.position_m;
+    sum += s.area_m2 * (s.position_m - s.radius_m * s.normal);
     area_m2 += s.area_m2;
   }
   return area_m2 > 0 ? Vec3(sum / area_m2) : sum;
@@ -112,10 +114,14 @@ BodyPart findBodyPart(const BodySurface& surface, const Symmetry& symmetry, cons
   part.radius_m = quantile(radii, 0.5);
   part.low_m = quantile(along, 0.03);
   part.high_m = quantile(along, 0.97);
+  part.middle_m = middleOf(part);
+  if (part.central)
+    part.middle_m -= symmetry.plane.distance_m(part.middle_m) * symmetry.plane.normal();
   part.across = part.central ? symmetry.plane.normal()
-                             : Vec3(part.axis.cross(widestAcross(part, centreOf(part))));
-  if (part.paired) part.area_m2 *= 0.5;
-  addNear(surface, part.paired ? &symmetry.plane : nullptr, collector.box, part);
+                             : Vec3(part.axis.cross(widestAcross(part, part.middle_m)));
+  const bool doubled = part.central || part.paired;
+  if (doubled) part.area_m2 *= 0.5;
+  addNear(surface, doubled ? &symmetry.plane : nullptr, collector.box, part);
   return part;
 }
 
@@ -133,8 +139,10 @@ SolidTarget wholeTarget(const BodySurface& surface, const BodyPart& part, const 
     target.reach.push_back({s.position_m, s.fat_m, s.area_m2 * s.weightOf(part.joint)});
   }
   const std::size_t boundStep = part.near.size() / kMostBounds + 1;
+  const double weight =
+      kBoundWeight * static_cast<double>(boundStep) / static_cast<double>(part.near.size() + 1);
   for (std::size_t i = 0; i < part.near.size(); i += boundStep)
-    target.bounds.push_back({part.near[i], surface.leastFat_m()});
+    target.bounds.push_back({part.near[i], surface.leastFat_m(), weight});
   for (const Vec3& pin : {frame.world.translation_m, frame.end_m}) {
     const double deep_m = surface.inside(pin) ? -surface.signedDistance(pin) : 0;
     const double depth_m = 0.5 * (deep_m - surface.fat_m(deep_m));
@@ -149,7 +157,7 @@ FittedSolid wholeGuess(const BodySurface& surface, const BodyPart& part, const B
   const Vec3 x = y.cross(part.axis);
   guess.world.rotation << x, y, part.axis;
   // The middle of the part along the axis, the middle of its section across.
-  const Vec3 centre = centreOf(part);
+  const Vec3& centre = part.middle_m;
   const double middle_m = 0.5 * (part.low_m + part.high_m);
   const double now_m = part.axis.dot(centre - frame.world.translation_m);
   guess.world.translation_m = centre + (middle_m - now_m) * part.axis;

@@ -15,6 +15,7 @@ struct BodyPart {
   bool central = false, paired = false;
   Vec3 axis = Vec3::UnitY();         // along the bone
   Vec3 across = Vec3::UnitX();       // the solids' y: lateral for parts in the plane of symmetry
+  Vec3 middle_m = Vec3::Zero();      // of the body there
   double area_m2 = 0;                // of the skin that it dominates
   double usable = 0;                 // share of that which has room for flesh beneath
   double radius_m = 0;               // median of the local radius where there is room

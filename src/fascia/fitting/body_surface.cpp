@@ -159,16 +159,16 @@ bool BodySurface::inside(const Vec3& p, std::uint32_t except) const {
   return votes >= 3;
 }
 
-double BodySurface::signedDistance(const Vec3& p) const {
-  const auto nearest = hierarchy_.closest(p);
-  if (!nearest) return 1e150;
-  const auto& corners = mesh_.triangles[nearest->triangle];
+BodySurface::Nearest BodySurface::nearest(const Vec3& p) const {
+  const auto found = hierarchy_.closest(p);
+  if (!found) return {p, 1e150};
+  const auto& corners = mesh_.triangles[found->triangle];
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   for (std::size_t c = 0; c < 3; ++c) {
-    normal += static_cast<float>(nearest->weights[static_cast<int>(c)]) * mesh_.normals[corners[c]];
+    normal += static_cast<float>(found->weights[static_cast<int>(c)]) * mesh_.normals[corners[c]];
   }
-  const double side = normal.cast<double>().dot(p - nearest->position);
-  return side < 0 ? -nearest->distance_m : nearest->distance_m;
+  const double side = normal.cast<double>().dot(p - found->position);
+  return {found->position, side < 0 ? -found->distance_m : found->distance_m};
 }
 
 double BodySurface::thickness(const Vec3& p, const Vec3& inward, double limit_m) const {

@@ -42,8 +42,13 @@ class BodySurface {
   // Whether the surface surrounds the point: rays in several directions vote, so that holes (eyes,
   // cuffs) and doubled sheets do not decide. `except`: a connected piece that does not count.
   bool inside(const Vec3& p, std::uint32_t except = ~0u) const;
-  // Distance to the surface, negative inside by the nearest point's normal.
-  double signedDistance(const Vec3& p) const;
+  // The nearest point of the surface; the distance is negative inside by the normal there.
+  struct Nearest {
+    Vec3 position_m;
+    double distance_m;
+  };
+  Nearest nearest(const Vec3& p) const;
+  double signedDistance(const Vec3& p) const { return nearest(p).distance_m; }
   // Distance through the body along a direction that goes in at `p`; 0: nothing is behind.
   double thickness(const Vec3& p, const Vec3& inward, double limit_m) const;
 

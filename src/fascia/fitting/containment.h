@@ -2,6 +2,7 @@
 
 #include <fascia/fitting/body_surface.h>
 #include <fascia/fitting/fitted_solid.h>
+#include <fascia/fitting/solid_fitting.h>
 
 namespace fascia {
 
@@ -9,9 +10,10 @@ namespace fascia {
 // the solid outside of the skin. 0: the solid is inside.
 double deepestOutside_m(const BodySurface& surface, const FittedSolid& solid);
 
-// Makes the solid thinner until nothing of it is nearer to the skin than about `margin_m`. With a
-// symmetry plane its image counts too. False if next to nothing would be left.
-bool shrinkInside(const BodySurface& surface, const MirrorPlane* plane, double margin_m,
-                  FittedSolid& solid);
+// The target's best solid that keeps at least `margin_m` from the skin: fits, turns what it
+// violates into bounds, fits again, and at last makes it thinner. With a symmetry plane its image
+// must stay inside too. False if next to nothing would be left.
+bool fitInside(const BodySurface& surface, const MirrorPlane* plane, double margin_m,
+               SolidTarget target, FittedSolid& solid);
 
 }  // namespace fascia

@@ -46,9 +46,9 @@ PartFit fitPart(const BodySurface& surface, const Symmetry& symmetry, const Bone
   fit.why = whyNone(surface, part);
   if (!fit.why.empty()) return fit;
   const SolidTarget target = wholeTarget(surface, part, frame);
-  FittedSolid solid = fitSolid(target, wholeGuess(surface, part, frame));
   const MirrorPlane* plane = part.paired ? &symmetry.plane : nullptr;
-  if (!shrinkInside(surface, plane, 0.25 * surface.leastFat_m(), solid)) {
+  FittedSolid solid = wholeGuess(surface, part, frame);
+  if (!fitInside(surface, plane, 0.25 * surface.leastFat_m(), target, solid)) {
     fit.why = "nothing fits inside of the skin (radius " + millimetres(part.radius_m) + ")";
     return fit;
   }

@@ -11,7 +11,6 @@ namespace {
 enum Parameter { tx, ty, tz, rx, ry, rz, sx, sy, sz, e1, e2, taper, bend, kParameterCount };
 
 constexpr double kOutsideFactor = 5;  // a mm too far out costs as much as this many too far in
-constexpr double kBoundFactor = 6;
 constexpr double kReachScale = 0.35;  // of the radius: farther misses pull with constant force
 constexpr int kMostIterations = 30;
 
@@ -79,6 +78,22 @@ class Objective {
     return s;
   }
 
+  // The inverse of solid().
+  Eigen::VectorXd parameters(const FittedSolid& s) const {
+    Eigen::VectorXd x(static_cast<Eigen::Index>(kParameterCount));
+    const Mat3 toGuess = guess_.world.rotation.transpose();
+    x.segment<3>(tx) =
+        toGuess * (s.world.translation_m - guess_.world.translation_m) / target_.size_m;
+    const Eigen::AngleAxisd turn(toGuess * s.world.rotation);
+    x.segment<3>(rx) = turn.angle() * turn.axis();
+    x.segment<3>(sx) = s.half_m.cwiseQuotient(guess_.half_m).array().log();
+    x[e1] = s.exponent_e1;
+    x[e2] = s.exponent_e2;
+    x[taper] = s.taper;
+    x[bend] = s.bend_rad;
+    return x;
+  }
+
   void residuals(const Eigen::VectorXd& x, Eigen::VectorXd& r) {
     const FittedSolid s = solid(x);
     const FloatArray& d = probe_.measure(s.solid(), s.world);
@@ -90,11 +105,8 @@ class Objective {
       r[row++] = std::sqrt(reach.weight / total_) *
                  (off < 0 ? kOutsideFactor * off : softened(off, kReachScale));
     }
-    const double boundWeight =
-        kBoundFactor /
-        std::sqrt(static_cast<double>(std::max<std::size_t>(60, target_.bounds.size())));
     for (const auto& bound : target_.bounds) {
-      r[row] = boundWeight * std::min(0.0, distance_m() - bound.margin_m) * unit;
+      r[row] = std::sqrt(bound.weight) * std::min(0.0, distance_m() - bound.margin_m) * unit;
       ++row;
     }
     for (const auto& pin : target_.pins) {
@@ -105,13 +117,16 @@ class Objective {
   }
 
  private:
-  static constexpr Eigen::Index kPriors = 6;
+  static constexpr Eigen::Index kPriors = 12;
 
+  // Weak wishes for what the points leave open: stay near the guess, round rather than boxy.
   void writePriors(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::Index row) const {
     const double p = target_.prior;
-    r[row++] = 0.5 * p * (x[sx] - x[sy]);
+    for (const Parameter shift : {tx, ty, tz}) r[row++] = 0.5 * p * x[shift];
+    for (const Parameter turn : {rx, ry, rz}) r[row++] = p * x[turn];
+    r[row++] = p * (x[sx] - x[sy]);
     r[row++] = 0.5 * p * (x[sx] + x[sy] - 2 * x[sz]);
-    r[row++] = p * (x[e1] - 0.85);
+    r[row++] = p * (x[e1] - 0.9);
     r[row++] = p * (x[e2] - 0.9);
     r[row++] = p * (x[taper] - guess_.taper);
     r[row++] = 0.5 * p * x[bend];
@@ -141,13 +156,10 @@ LeastSquaresProblem problemFor(const SolidTarget& target, Objective& objective) 
 
 }  // namespace
 
-FittedSolid fitSolid(const SolidTarget& target, const FittedSolid& guess) {
+FittedSolid fitSolid(const SolidTarget& target, const FittedSolid& guess,
+                     const FittedSolid& start) {
   Objective objective(target, guess);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(kParameterCount);
-  x[e1] = guess.exponent_e1;
-  x[e2] = guess.exponent_e2;
-  x[taper] = guess.taper;
-  x[bend] = guess.bend_rad;
+  Eigen::VectorXd x = objective.parameters(start);
   minimize(problemFor(target, objective), x, kMostIterations);
   FittedSolid fitted = objective.solid(x);
   // Amounts that nobody sees cost a deformation for every evaluation.

@@ -18,7 +18,7 @@ struct SolidTarget {
   // Skin that it must stay under, `margin_m` at least.
   struct Bound {
     Vec3 position_m;
-    double margin_m;
+    double margin_m, weight;
   };
   // Points that it should cover, `depth_m` deep (joints' centres: neighbours then overlap there).
   struct Pin {
@@ -34,10 +34,14 @@ struct SolidTarget {
   double prior = 0.05;  // pull towards the first guess's proportions
 };
 
-// The target's best superellipsoid by nonlinear least squares from the first guess: distances at
-// `reach` are to be the fat's thickness, robustly on the far side (what a convex solid cannot reach
-// shall not pull it out elsewhere), heavily on the near one.
-FittedSolid fitSolid(const SolidTarget& target, const FittedSolid& guess);
+// The target's best superellipsoid by nonlinear least squares from `start`; where the points leave
+// it open it keeps to the first guess: distances at `reach` are to be the fat's thickness, robustly
+// on the far side (what a convex solid cannot reach shall not pull it out elsewhere), heavily on
+// the near one.
+FittedSolid fitSolid(const SolidTarget& target, const FittedSolid& guess, const FittedSolid& start);
+inline FittedSolid fitSolid(const SolidTarget& target, const FittedSolid& guess) {
+  return fitSolid(target, guess, guess);
+}
 
 // Root mean square of |distance − fat| over `reach`, weighted.
 double residualRms_m(const SolidTarget& target, const FittedSolid& solid);

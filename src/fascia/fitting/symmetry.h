@@ -22,6 +22,7 @@ struct MirrorPlane {
   // Rotation axes and the like keep their part across the plane and turn the rest.
   Vec3 axial(const Vec3& v) const { return -direction(v); }
   Vec3 normal() const { return Vec3::Unit(axis); }
+  double distance_m(const Vec3& p) const { return p[axis] - offset_m; }
 };
 
 // Which joint is which one's mirror image.

@@ -1,0 +1,199 @@
+#include <filesystem>
+#include <optional>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include <fascia/base/parallel.h>
+#include <fascia/fitting/fit_flesh.h>
+#include <fascia/io/character_file.h>
+#include <fascia/io/file.h>
+#include <fascia/io/gltf_document.h>
+#include <fascia/io/rig_import.h>
+
+#include "commands.h"
+#include "console.h"
+#include "outputs.h"
+
+namespace fascia {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFooter =
+    R"(Fills a rigged mesh with flesh: solids on its bones, under a layer of fat, inside of the skin.
+The character file names the mesh's file, which must lie in the same folder or below it; if it does
+not, a copy NAME.rig.glb is put beside the character file.
+
+Examples:
+  fascia flesh fox.glb -o fox.fascia.json
+  fascia flesh centimetres.glb --scale 0.01 -o small.fascia.json --fat 0.25)";
+
+struct FleshOptions {
+  std::string input, output, report;
+  double scale = 1;
+  FitOptions fit;
+  int threads = 0;
+  bool force = false;
+};
+
+// "fox.fascia.json" -> "fox".
+std::string nameOf(const fs::path& output) {
+  std::string name = output.filename().string();
+  for (const std::string ending : {".json", ".fascia"}) {
+    if (name.size() > ending.size() && name.ends_with(ending))
+      name.resize(name.size() - ending.size());
+  }
+  return name;
+}
+
+// The rig's path from the output's folder, if a character file there can name it.
+std::optional<std::string> pathBelow(const fs::path& rig, const fs::path& folder) {
+  const std::string ending = endingOf(rig.string());
+  if (ending != ".glb" && ending != ".gltf") return std::nullopt;
+  std::error_code fault;
+  const fs::path real = fs::canonical(rig, fault), base = fs::canonical(folder, fault);
+  if (fault) return std::nullopt;
+  const fs::path relative = real.lexically_relative(base);
+  if (relative.empty() || *relative.begin() == "..") return std::nullopt;
+  return relative.generic_string();
+}
+
+struct RigFile {
+  RigDef def;
+  std::string copy;  // path of the copy to write; empty: none is needed
+};
+
+RigFile placeRig(const FleshOptions& options) {
+  const fs::path output = options.output;
+  const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+  RigFile rig;
+  rig.def.scale = options.scale;
+  if (const auto below = pathBelow(options.input, folder)) {
+    rig.def.file = *below;
+    return rig;
+  }
+  rig.def.file = nameOf(output) + ".rig.glb";
+  rig.copy = (folder / rig.def.file).string();
+  return rig;
+}
+
+void copyRig(const FleshOptions& options, const RigFile& rig) {
+  GltfDocument::read(options.input).writeGlb(rig.copy);
+}
+
+void refuseToOverwrite(const std::string& path, bool force) {
+  std::error_code fault;
+  if (force || path.empty() || !fs::exists(path, fault)) return;
+  Issue issue;
+  issue.where.file = path;
+  issue.message = "exists already";
+  issue.hint = "--force overwrites it";
+  throw Error(std::move(issue));
+}
+
+void sayTable(const FleshFit& fit, const Console& console) {
+  console.say(fmt::format("{:28} {:>6} {:>6} {:>9} {:>9} {:>9}", "joint", "points", "solids",
+                          "coverage", "residual", "outside"));
+  for (const JointFit& joint : fit.joints) {
+    if (joint.solids.empty()) {
+      console.say(fmt::format("{:28} {:6} {:>6}   {}", joint.joint, joint.points, "-", joint.why));
+      continue;
+    }
+    console.say(fmt::format("{:28} {:6} {:6} {:7.0f} % {:6.1f} mm {:6.2f} mm", joint.joint,
+                            joint.points, joint.solids.size(), 100 * joint.coverage,
+                            1000 * joint.residual_rms_m, 1000 * joint.deepest_outside_m));
+  }
+  console.say(fmt::format("{:28} {:6} {:6} {:7.0f} % {:6.1f} mm {:6.2f} mm", "all", "",
+                          fit.flesh.solids.size(), 100 * fit.coverage, 1000 * fit.residual_rms_m,
+                          1000 * fit.deepest_outside_m));
+}
+
+Json reportJson(const RiggedModel& model, const FleshFit& fit) {
+  Json::List joints, notes;
+  for (const JointFit& joint : fit.joints) {
+    Json::List solids;
+    for (const std::string& solid : joint.solids) solids.emplace_back(solid);
+    Json entry = Json::Object{{"joint", joint.joint},
+                              {"points", static_cast<double>(joint.points)},
+                              {"solids", std::move(solids)},
+                              {"coverage", joint.coverage},
+                              {"residual_rms_m", joint.residual_rms_m},
+                              {"deepest_outside_m", joint.deepest_outside_m}};
+    if (!joint.why.empty()) entry.set("why", joint.why);
+    joints.push_back(std::move(entry));
+  }
+  for (const std::string& note : model.notes) notes.emplace_back(note);
+  return Json::Object{{"coverage", fit.coverage},
+                      {"residual_rms_m", fit.residual_rms_m},
+                      {"deepest_outside_m", fit.deepest_outside_m},
+                      {"notes", std::move(notes)},
+                      {"joints", std::move(joints)}};
+}
+
+void flesh(const FleshOptions& options, const Console& console) {
+  checkFolders({options.output, options.report});
+  refuseToOverwrite(options.output, options.force);
+  RigFile rig = placeRig(options);
+  refuseToOverwrite(rig.copy, options.force);
+  const ThreadLimit threads(options.threads);
+  const RiggedModel model = readRiggedModel(options.input, {options.scale});
+  FleshFit fit = fitFlesh(model, options.fit);
+  sayTable(fit, console);
+  for (const std::string& note : model.notes) console.say("note: " + note);
+  const Json report = reportJson(model, fit);
+  if (!options.report.empty()) writeFileWhole(options.report, printJson(report));
+  if (!rig.copy.empty()) {
+    copyRig(options, rig);
+    console.say("wrote " + rig.copy);
+  }
+  CharacterDef def;
+  def.name = nameOf(options.output);
+  def.skeleton = std::move(fit.skeleton);
+  def.flesh = std::move(fit.flesh);
+  def.rig = rig.def;
+  def.skin.emplace();
+  writeCharacterFile(def, options.output);
+  console.say("wrote " + options.output);
+  console.say(
+      fmt::format("next: fascia render {0} -o {1}.png --layers muscle,skeleton\n"
+                  "      fascia bake {0} -o {1}.alive.glb",
+                  options.output, nameOf(options.output)));
+  console.answer(Json::Object{{"ok", true}, {"output", options.output}, {"fit", report}});
+}
+
+}  // namespace
+
+void addFlesh(CLI::App& program, Console& console) {
+  CLI::App& command =
+      *program.add_subcommand("flesh", "Fill a rigged mesh with flesh: a character of it");
+  const auto options = std::make_shared<FleshOptions>();
+  command.add_option("INPUT", options->input, "A rigged mesh: .glb, .gltf, .fbx, …")
+      ->required()
+      ->type_name("");
+  command.add_option("-o,--output", options->output, "Character file to write: *.fascia.json")
+      ->required()
+      ->type_name("FILE")
+      ->check(endsIn({".json"}));
+  command.add_option("--scale", options->scale, "Of all lengths; 0.01 for a file in centimetres")
+      ->type_name("FACTOR")
+      ->check(CLI::Range(1e-6, 1e6));
+  command
+      .add_option("--fat", options->fit.fat_share,
+                  "Thickness of fat as a share of the body's local radius")
+      ->type_name("SHARE")
+      ->check(CLI::Range(0.01, 0.9))
+      ->capture_default_str();
+  command.add_option("--report", options->report, "Write the table to this JSON file")
+      ->type_name("FILE");
+  command
+      .add_option("--threads", options->threads, "Threads to use; 0 = all. The result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+  command.add_flag("--force", options->force, "Overwrite files");
+  console.addFlags(command);
+  command.footer(kFooter);
+  command.callback([options, &console] { flesh(*options, console); });
+}
+
+}  // namespace fascia
