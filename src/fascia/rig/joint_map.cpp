@@ -110,6 +110,13 @@ std::size_t Guesser::sameNames() const {
 void Guesser::pairNames() {
   const auto names = byBareName(source_);
   for (std::size_t t = 0; t < target_.size(); ++t) {
+    // In chains of unequal length equal names are not the same bones.
+    const JointMeaning meaning = targetMeanings_[t];
+    const bool isChain = meaning.part == BodyPart::spine || meaning.part == BodyPart::neck;
+    if (isChain &&
+        joints(sourceMeanings_, meaning).size() != joints(targetMeanings_, meaning).size()) {
+      continue;
+    }
     const auto same = names.find(bareName(target_[t].name));
     if (same != names.end()) pair(same->second, static_cast<int>(t), "same name");
   }

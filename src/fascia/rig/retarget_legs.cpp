@@ -13,12 +13,20 @@ constexpr double kReach = 0.995;
 // the knee's own axis takes over.
 constexpr double kStraightSine = 0.05;
 
-double cornerAngle(double a, double b, double opposite) {
-  return std::acos(std::clamp((a * a + b * b - opposite * opposite) / (2 * a * b), -1.0, 1.0));
-}
-
-Mat3 about(const Vec3& axis, double angle_rad) {
-  return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
+// The least turn δ of a bone `b` about an axis that brings the end of the chain a + R(δ) b to a
+// distance, or as near to it as it goes: |a + R(δ) b|² = d² is A cos δ + B sin δ = C.
+double turnToDistance(const Vec3& a, const Vec3& b, const Vec3& axis, double distance) {
+  const Vec3 along = axis * axis.dot(b), across = b - along;
+  const double cosine = a.dot(across), sine = a.dot(axis.cross(across));
+  const double wanted =
+      0.5 * (distance * distance - a.squaredNorm() - b.squaredNorm()) - a.dot(along);
+  const double size = std::hypot(cosine, sine);
+  if (size == 0) return 0;
+  const double straight = std::atan2(sine, cosine);
+  const double bend = std::acos(std::clamp(wanted / size, -1.0, 1.0));
+  const auto wrapped = [](double angle) { return std::remainder(angle, 2 * kPi); };
+  const double one = wrapped(straight - bend), other = wrapped(straight + bend);
+  return std::abs(one) < std::abs(other) ? one : other;
 }
 
 }  // namespace
@@ -64,20 +72,12 @@ LegTurns reach(const Vec3& hip, const Vec3& knee, const Vec3& ankle, const Vec3&
   const double after = std::clamp((goal - hip).norm(), shortest, longest);
 
   Vec3 hinge = (knee - hip).cross(ankle - knee) + kStraightSine * thigh * shin * kneeAxis;
-  hinge -= (ankle - hip) * hinge.dot(ankle - hip) / (before * before);
   if (hinge.norm() == 0) return {};
   hinge.normalize();
-  // Flexing about the hinge moves the shin back; the angles of hip and knee in the triangle differ.
-  const double atHip = cornerAngle(thigh, before, shin) - cornerAngle(thigh, after, shin);
-  const double atKnee = cornerAngle(thigh, shin, before) - cornerAngle(thigh, shin, after);
-  LegTurns turns;
-  turns.upper = about(hinge, atHip);
-  turns.lower = about(hinge, atHip + atKnee);
-  const Vec3 reached = turns.upper * (knee - hip) + turns.lower * (ankle - knee);
-  const Mat3 swing = shortestArc(reached, goal - hip);
-  turns.upper = swing * turns.upper;
-  turns.lower = swing * turns.lower;
-  return turns;
+  const Mat3 bend = Eigen::AngleAxisd(turnToDistance(knee - hip, ankle - knee, hinge, after), hinge)
+                        .toRotationMatrix();
+  const Mat3 swing = shortestArc(knee - hip + bend * (ankle - knee), goal - hip);
+  return {swing, swing * bend};
 }
 
 }  // namespace fascia
