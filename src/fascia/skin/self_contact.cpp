@@ -129,14 +129,14 @@ void SelfContact::findOfBlock(std::size_t block, const PointModel& points, float
     if (points.free[touch.point] == 0) return;
     const float keep_m = keptDistance(*model_, touch.point, touch.group);
     const float gap_m = touch.distance_m - keep_m;
-    if (keep_m == SelfContactModel::kLeaveAlone) return;
     const Eigen::Vector3f relative =
         get(velocity, touch.point) -
         blend(velocity, model_->triangle(touch.triangle), touch.weights);
     if (gap_m > reach_m + interval_s * std::max(0.f, -relative.dot(touch.normal))) return;
     known = {touch.nearest_m, keep_m, touch};
   };
-  search_.search(block, {model_->gap_m + reach_m, 1, position, velocity}, std::cref(consider));
+  search_.search(block, {model_->gap_m + reach_m, 1, true, position, velocity},
+                 std::cref(consider));
   std::uint32_t& count = foundCounts_[block] = 0;
   for (const Best& c : best) {
     if (c.nearest_m == Best().nearest_m) continue;

@@ -1,6 +1,7 @@
 #include <fascia/skin/self_contact_kernels.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 // SSSE3 and AVX3_DL add code, not speed, here.
@@ -23,6 +24,10 @@ HWY_INLINE V3 gather(const VectorArray& a, VI k) {
   return {hn::GatherIndex(d, a.x.data(), k), hn::GatherIndex(d, a.y.data(), k),
           hn::GatherIndex(d, a.z.data(), k)};
 }
+HWY_INLINE V3 crossProduct(V3 a, V3 b) {
+  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
 HWY_INLINE V3 least(V3 a, V3 b) {
   return {hn::Min(a.x, b.x), hn::Min(a.y, b.y), hn::Min(a.z, b.z)};
 }
@@ -43,8 +48,8 @@ HWY_INLINE V inverseLength(V3 a) {
   const auto any = hn::Gt(square, hn::Set(d, 1e-30f));
   return hn::IfThenElseZero(any, inverseRoot(hn::IfThenElse(any, square, hn::Set(d, 1.f))));
 }
-inline Pointers pointers(const PointLanes::Lanes3& a) {
-  return {a.x.data(), a.y.data(), a.z.data()};
+HWY_INLINE V3 at(const PointLanes::Lanes3& a, std::size_t l) {
+  return Pointers{a.x.data(), a.y.data(), a.z.data()}.at(static_cast<std::ptrdiff_t>(l));
 }
 
 // Bounds of vectors that are added one after the other.
@@ -86,23 +91,26 @@ MotionBounds updateGroupImpl(const SelfContactModel& m, std::size_t group,
   const D d;
   const DI di;
   const SelfContactModel::Group g = m.groups[group];
+  const V third = hn::Set(d, 1.f / 3);
   Extent places, speeds;
   for (std::size_t t = g.first; t < g.first + g.count; t += hn::Lanes(d)) {
-    const V3 a = gather(position, hn::LoadU(di, m.corners[0].data() + t));
-    const V3 b = gather(position, hn::LoadU(di, m.corners[1].data() + t));
-    const V3 c = gather(position, hn::LoadU(di, m.corners[2].data() + t));
-    const V3 normal = cross(b - a, c - a);
-    const V3 low = least(a, least(b, c)), high = most(a, most(b, c));
-    pointers(frame.areaNormal).set(static_cast<std::ptrdiff_t>(t), normal);
+    const VI corners[] = {hn::LoadU(di, m.corners[0].data() + t),
+                          hn::LoadU(di, m.corners[1].data() + t),
+                          hn::LoadU(di, m.corners[2].data() + t)};
+    const V3 a = gather(position, corners[0]), b = gather(position, corners[1]),
+             c = gather(position, corners[2]);
+    const V3 normal = crossProduct(b - a, c - a), center = scaled(third, a + b + c);
+    const V3 v = scaled(third, gather(velocity, corners[0]) + gather(velocity, corners[1]) +
+                                   gather(velocity, corners[2]));
+    const V square = hn::Max(dot(a - center, a - center),
+                             hn::Max(dot(b - center, b - center), dot(c - center, c - center)));
+    const auto at = static_cast<std::ptrdiff_t>(t);
+    pointers(frame.areaNormal).set(at, normal);
     hn::StoreU(inverseLength(normal), d, frame.inverseLength.data() + t);
-    pointers(frame.corner).set(static_cast<std::ptrdiff_t>(t), a);
-    pointers(frame.low).set(static_cast<std::ptrdiff_t>(t), low);
-    pointers(frame.high).set(static_cast<std::ptrdiff_t>(t), high);
-    places.add(low, high);
-  }
-  const std::span<const std::int32_t> points = m.groupPoints[group];
-  for (std::size_t i = 0; i < points.size(); i += hn::Lanes(d)) {
-    const V3 v = gather(velocity, hn::LoadU(di, points.data() + i));
+    pointers(frame.center).set(at, center);
+    hn::StoreU(hn::Sqrt(square), d, frame.radius.data() + t);
+    pointers(frame.velocity).set(at, v);
+    places.add(least(a, least(b, c)), most(a, most(b, c)));
     speeds.add(v, v);
   }
   MotionBounds out;
@@ -130,14 +138,12 @@ void updateNormalsImpl(const SelfContactModel& m, std::size_t chunk, SurfaceFram
   }
 }
 
-MotionBounds boundsOfLanesImpl(const PointLanes& lanes, const PointLanes::Lanes3& velocity) {
+MotionBounds boundsOfLanesImpl(const PointLanes& lanes) {
   const D d;
   Extent places, speeds;
-  const auto at = [](const PointLanes::Lanes3& a, std::size_t l)
-                      HWY_ATTR { return pointers(a).at(static_cast<std::ptrdiff_t>(l)); };
   for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d)) {
-    places.add(at(lanes.place, l), at(lanes.place, l));
-    speeds.add(at(velocity, l), at(velocity, l));
+    const V3 r = at(lanes.place, l), v = at(lanes.velocity, l);
+    places.add(r, r), speeds.add(v, v);
   }
   MotionBounds out;
   places.write(out.low, out.high);
@@ -146,63 +152,112 @@ MotionBounds boundsOfLanesImpl(const PointLanes& lanes, const PointLanes::Lanes3
   return out;
 }
 
-// Calls visit(i) for the lanes of a mask below `count`.
-template <class Mask, class Visit>
-HWY_INLINE void forEachLane(Mask mask, std::size_t count, const Visit& visit) {
+using Mask = hn::Mask<D>;
+
+// Calls visit(i) for the lanes of a mask that are set in `allowed` too.
+template <class Visit>
+HWY_INLINE void forEachLane(Mask mask, std::uint32_t allowed, const Visit& visit) {
   const D d;
   if (hn::AllFalse(d, mask)) return;
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, mask, bits);
-  for (std::size_t i = 0; i < std::min(count, hn::Lanes(d)); ++i)
-    if (bits[i / 8] >> (i % 8) & 1) visit(i);
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  for (std::uint32_t bits = (bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8) & allowed;
+       bits != 0; bits &= bits - 1)
+    visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-// The points near one triangle, appended to `out`.
-HWY_INLINE std::size_t pointsNear(const SelfContactModel& m, const SurfaceFrame& f, std::size_t t,
-                                  const PointLanes& lanes, const PairReach& reach,
-                                  std::array<Candidate, kMostCandidates>& out, std::size_t count) {
+// Calls visit(t) for the triangles of a group that the block's points can reach.
+template <class Visit>
+HWY_INLINE void forEachTriangle(const SelfContactModel& m, std::size_t group, const SurfaceFrame& f,
+                                const PairReach& reach, const Visit& visit) {
   const D d;
-  const V3 low =
-      all(f.low.x[t] - reach.above[0], f.low.y[t] - reach.above[1], f.low.z[t] - reach.above[2]);
-  const V3 high =
-      all(f.high.x[t] + reach.below[0], f.high.y[t] + reach.below[1], f.high.z[t] + reach.below[2]);
-  const float inverse = f.inverseLength[t];
-  const V3 normal =
-      all(f.areaNormal.x[t] * inverse, f.areaNormal.y[t] * inverse, f.areaNormal.z[t] * inverse);
-  const V front = hn::Set(d, reach.ahead_m), back = hn::Set(d, -reach.depthScale * m.depth_m[t]);
-  const V3 corner = all(f.corner.x[t], f.corner.y[t], f.corner.z[t]);
-  for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d)) {
-    const V3 r = pointers(lanes.place).at(static_cast<std::ptrdiff_t>(l));
-    const V3 n = pointers(lanes.normal).at(static_cast<std::ptrdiff_t>(l));
-    const V height = dot(r - corner, normal);
-    const auto inside = hn::And(hn::And(hn::And(hn::Ge(r.x, low.x), hn::Le(r.x, high.x)),
-                                        hn::And(hn::Ge(r.y, low.y), hn::Le(r.y, high.y))),
-                                hn::And(hn::Ge(r.z, low.z), hn::Le(r.z, high.z)));
-    const auto facing = hn::And(hn::Lt(dot(n, normal), hn::Set(d, kMayFace)),
-                                hn::And(hn::Le(height, front), hn::Ge(height, back)));
-    forEachLane(hn::And(inside, facing), lanes.count - l, [&](std::size_t i) {
-      out[count++] = {static_cast<std::uint32_t>(l + i), static_cast<std::uint32_t>(t)};
-    });
+  const SelfContactModel::Group g = m.groups[group];
+  const V3 low = all(reach.low), high = all(reach.high);
+  const auto meets = [](V lowest, V highest, V center, V radius) HWY_ATTR {
+    return hn::And(hn::Le(hn::Sub(center, radius), highest),
+                   hn::Ge(hn::Add(center, radius), lowest));
+  };
+  for (std::size_t t = g.first; t < g.first + g.count; t += hn::Lanes(d)) {
+    const V3 c = pointers(f.center).at(static_cast<std::ptrdiff_t>(t));
+    const V r = hn::LoadU(d, f.radius.data() + t);
+    const Mask mask = hn::And(meets(low.x, high.x, c.x, r),
+                              hn::And(meets(low.y, high.y, c.y, r), meets(low.z, high.z, c.z, r)));
+    forEachLane(mask, ~0u, [&](std::size_t i) HWY_ATTR { visit(t + i); });
   }
-  return count;
+}
+
+// One triangle and how points lie to it.
+struct TriangleTest {
+  V3 center, velocity, normal;
+  V radius, front, back, interval, slack;
+
+  HWY_INLINE TriangleTest(const SelfContactModel& m, const SurfaceFrame& f, std::size_t t,
+                          const PairReach& reach) {
+    const D d;
+    const float inverse = f.inverseLength[t];
+    center = all(f.center.x[t], f.center.y[t], f.center.z[t]);
+    velocity = all(f.velocity.x[t], f.velocity.y[t], f.velocity.z[t]);
+    normal =
+        all(f.areaNormal.x[t] * inverse, f.areaNormal.y[t] * inverse, f.areaNormal.z[t] * inverse);
+    radius = hn::Set(d, f.radius[t]);
+    front = hn::Set(d, reach.ahead_m);
+    back = hn::Set(d, -reach.depthScale * m.depth_m[t]);
+    interval = hn::Set(d, reach.interval_s);
+    slack = hn::Set(d, f.radius[t] + m.gap_m);
+  }
+
+  struct Points {
+    Mask near;    // that may touch the triangle
+    Mask surely;  // that do
+    V square;     // of the distance to its centre
+  };
+  HWY_INLINE Points test(const PointLanes& lanes, std::size_t l) const {
+    const D d;
+    const V3 way = at(lanes.place, l) - center;
+    const V height = dot(way, normal), square = dot(way, way);
+    const V approach = hn::Mul(interval, dot(velocity - at(lanes.velocity, l), normal));
+    const V facing = dot(at(lanes.normal, l), normal);
+    const V aside = hn::NegMulAdd(height, height, square);
+    const V widest = hn::MulAdd(hn::Set(d, kSteepest), hn::Abs(height), slack);
+    const V farthest = hn::Add(hn::LoadU(d, lanes.nearest_m.data() + l), radius);
+    const V ahead = hn::Add(front, hn::Max(approach, hn::Zero(d)));
+    const Mask inRange = hn::And(hn::And(hn::Le(height, ahead), hn::Ge(height, back)),
+                                 hn::And(hn::Le(aside, hn::Mul(widest, widest)),
+                                         hn::Le(square, hn::Mul(farthest, farthest))));
+    const V inner = hn::Mul(hn::Set(d, 0.25f), hn::Mul(radius, radius));
+    const Mask near = hn::And(inRange, hn::Lt(facing, hn::Set(d, kMayFace)));
+    const Mask opposite = hn::And(hn::Lt(facing, hn::Set(d, -kMayFace)), hn::Le(aside, inner));
+    return {near, hn::And(near, opposite), square};
+  }
+};
+
+void boundNearestImpl(const SelfContactModel& m, std::size_t group, const SurfaceFrame& f,
+                      const PairReach& reach, PointLanes& lanes) {
+  const D d;
+  forEachTriangle(m, group, f, reach, [&](std::size_t t) HWY_ATTR {
+    const TriangleTest triangle(m, f, t, reach);
+    for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d)) {
+      const TriangleTest::Points points = triangle.test(lanes, l);
+      forEachLane(points.surely, reach.lanes >> l, [&](std::size_t i) HWY_ATTR {
+        float& nearest = lanes.nearest_m[l + i];
+        nearest = std::min(nearest, std::sqrt(hn::ExtractLane(points.square, i)));
+      });
+    }
+  });
 }
 
 std::size_t candidatesImpl(const SelfContactModel& m, std::size_t group, const SurfaceFrame& f,
-                           const PointLanes& lanes, const PairReach& reach,
+                           const PairReach& reach, const PointLanes& lanes,
                            std::array<Candidate, kMostCandidates>& out) {
   const D d;
-  const SelfContactModel::Group g = m.groups[group];
-  const V3 boxLow = all(reach.low), boxHigh = all(reach.high);
   std::size_t count = 0;
-  for (std::size_t t = g.first; t < g.first + g.count; t += hn::Lanes(d)) {
-    const V3 low = pointers(f.low).at(static_cast<std::ptrdiff_t>(t));
-    const V3 high = pointers(f.high).at(static_cast<std::ptrdiff_t>(t));
-    const auto meet = hn::And(hn::And(hn::And(hn::Le(low.x, boxHigh.x), hn::Ge(high.x, boxLow.x)),
-                                      hn::And(hn::Le(low.y, boxHigh.y), hn::Ge(high.y, boxLow.y))),
-                              hn::And(hn::Le(low.z, boxHigh.z), hn::Ge(high.z, boxLow.z)));
-    forEachLane(meet, hn::Lanes(d),
-                [&](std::size_t i) { count = pointsNear(m, f, t + i, lanes, reach, out, count); });
-  }
+  forEachTriangle(m, group, f, reach, [&](std::size_t t) HWY_ATTR {
+    const TriangleTest triangle(m, f, t, reach);
+    for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d))
+      forEachLane(triangle.test(lanes, l).near, reach.lanes >> l, [&](std::size_t i) {
+        out[count++] = {static_cast<std::uint32_t>(l + i), static_cast<std::uint32_t>(t)};
+      });
+  });
   return count;
 }
 
@@ -216,14 +271,15 @@ namespace fascia {
 HWY_EXPORT(updateGroupImpl);
 HWY_EXPORT(updateNormalsImpl);
 HWY_EXPORT(boundsOfLanesImpl);
+HWY_EXPORT(boundNearestImpl);
 HWY_EXPORT(candidatesImpl);
 
 SurfaceFrame::SurfaceFrame(const SelfContactModel& model)
     : areaNormal(model.triangleCount() + 1),
       inverseLength(model.triangleCount()),
-      corner(model.triangleCount()),
-      low(model.triangleCount()),
-      high(model.triangleCount()),
+      center(model.triangleCount()),
+      radius(model.triangleCount()),
+      velocity(model.triangleCount()),
       normal(model.fans.size() * SelfContactModel::kLanes) {}
 
 MotionBounds updateGroup(const SelfContactModel& model, std::size_t group,
@@ -251,18 +307,23 @@ void load(const PointBlock& block, const VectorArray& from, PointLanes::Lanes3& 
 
 MotionBounds loadLanes(const PointBlock& block, const VectorArray& position,
                        const VectorArray& velocity, const SurfaceFrame& frame, PointLanes& lanes) {
-  PointLanes::Lanes3 speed;
   lanes.count = block.count;
   load(block, position, lanes.place);
+  load(block, velocity, lanes.velocity);
   load(block, frame.normal, lanes.normal);
-  load(block, velocity, speed);
-  return HWY_DYNAMIC_DISPATCH(boundsOfLanesImpl)(lanes, speed);
+  lanes.nearest_m.fill(1e15f);
+  return HWY_DYNAMIC_DISPATCH(boundsOfLanesImpl)(lanes);
+}
+
+void boundNearest(const SelfContactModel& model, std::size_t group, const SurfaceFrame& frame,
+                  const PairReach& reach, PointLanes& lanes) {
+  HWY_DYNAMIC_DISPATCH(boundNearestImpl)(model, group, frame, reach, lanes);
 }
 
 std::size_t findCandidates(const SelfContactModel& model, std::size_t group,
-                           const SurfaceFrame& frame, const PointLanes& lanes,
-                           const PairReach& reach, std::array<Candidate, kMostCandidates>& out) {
-  return HWY_DYNAMIC_DISPATCH(candidatesImpl)(model, group, frame, lanes, reach, out);
+                           const SurfaceFrame& frame, const PairReach& reach,
+                           const PointLanes& lanes, std::array<Candidate, kMostCandidates>& out) {
+  return HWY_DYNAMIC_DISPATCH(candidatesImpl)(model, group, frame, reach, lanes, out);
 }
 
 }  // namespace fascia

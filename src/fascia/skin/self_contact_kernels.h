@@ -10,12 +10,13 @@ namespace fascia {
 
 // SIMD kernels that find which points may touch which triangles; dispatched at run time.
 
-// The surface as it lies now.
+// The surface as it lies and moves now.
 struct SurfaceFrame {
   VectorArray areaNormal;    // per triangle: twice its area long; one more, 0, for missing ones
   FloatArray inverseLength;  // of areaNormal; 0 for a triangle without area
-  VectorArray corner;        // per triangle: its first corner
-  VectorArray low, high;     // per triangle: its box
+  VectorArray center;        // per triangle
+  FloatArray radius;         // of the sphere around center that holds the triangle
+  VectorArray velocity;      // of center
   VectorArray normal;        // per point: unit, or 0
 
   explicit SurfaceFrame(const SelfContactModel& model);
@@ -35,7 +36,7 @@ struct MotionBounds {
   NormalCone normals;
 };
 
-// The points of one block.
+// The points of one block; lanes behind the last point repeat the first one.
 struct PointLanes {
   template <class T>
   using Lanes = std::array<T, PointBlock::kCapacity>;
@@ -43,15 +44,18 @@ struct PointLanes {
     Lanes<float> x, y, z;
   };
   std::uint32_t count;
-  Lanes3 place, normal;  // behind the last point repeating the first one
+  Lanes3 place, velocity, normal;
+  // No farther than this is the nearest triangle that the point touches.
+  alignas(64) Lanes<float> nearest_m;
 };
 
 // How a block and a group of triangles can meet until the end of the interval.
 struct PairReach {
-  float low[3], high[3];     // box that triangles must touch
-  float below[3], above[3];  // how far around a triangle's box its points may be
-  float ahead_m;             // how far in front of a triangle
-  float depthScale;          // times depth_m: how far behind
+  float low[3], high[3];  // box that triangles must touch
+  float ahead_m;          // how far in front of a triangle a point may be, …
+  float interval_s;       // … and how long they may approach each other
+  float depthScale;       // times depth_m: how far behind
+  std::uint32_t lanes;    // bit by bit: which points
 };
 
 struct Candidate {
@@ -63,6 +67,9 @@ inline constexpr std::size_t kMostCandidates =
 // Cosine of a point's and a triangle's normals above which they do not face each other. Smoothed
 // normals, which decide in the end, differ from a triangle's own.
 inline constexpr float kMayFace = 0.5f;
+// A point that is farther beside a triangle than this many times its height over it or depth below
+// it has nothing to do with it.
+inline constexpr float kSteepest = 1.2f;
 
 // Normals and boxes of a group's triangles, and bounds of the whole group.
 MotionBounds updateGroup(const SelfContactModel& model, std::size_t group,
@@ -75,9 +82,14 @@ void updateNormals(const SelfContactModel& model, std::size_t chunk, SurfaceFram
 MotionBounds loadLanes(const PointBlock& block, const VectorArray& position,
                        const VectorArray& velocity, const SurfaceFrame& frame, PointLanes& lanes);
 
-// Points and triangles that may touch, triangle by triangle; returns how many.
+// Lowers nearest_m of the points to what a look at the triangles' centres tells for certain.
+void boundNearest(const SelfContactModel& model, std::size_t group, const SurfaceFrame& frame,
+                  const PairReach& reach, PointLanes& lanes);
+
+// Points and triangles that may touch and are not too far for nearest_m, triangle by triangle;
+// returns how many.
 std::size_t findCandidates(const SelfContactModel& model, std::size_t group,
-                           const SurfaceFrame& frame, const PointLanes& lanes,
-                           const PairReach& reach, std::array<Candidate, kMostCandidates>& out);
+                           const SurfaceFrame& frame, const PairReach& reach,
+                           const PointLanes& lanes, std::array<Candidate, kMostCandidates>& out);
 
 }  // namespace fascia

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <queue>
 
@@ -31,6 +32,8 @@ constexpr float kCrossing = 0.02f;
 constexpr float kRestSlack = 0.02f;
 // How many points around one that crosses another part at rest are left alone like that one.
 constexpr int kSpread = 2;
+// Distance to keep between what crosses.
+constexpr float kLeaveAlone = -1e30f;
 
 Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
   return {a.x[k], a.y[k], a.z[k]};
@@ -112,6 +115,7 @@ class Preparation {
 
   SelfContactModel run() {
     makeGroups();
+    model_.tree.build(boxes_);
     makeFans();
     findNearPoints();
     measureDepths();
@@ -158,21 +162,23 @@ class Preparation {
   void addGroup(std::span<const std::uint32_t> members) {
     SelfContactModel& m = model_;
     const std::size_t first = m.corners[0].size(), count = wholeVectors(members.size());
-    m.groups.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
-    std::vector<std::int32_t> points;
+    m.groups.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), 0});
+    std::vector<std::uint32_t> points;
+    Box box;
     for (std::size_t i = 0; i < count; ++i) {
       const auto& t = triangles_[members[std::min(i, members.size() - 1)]];
       for (std::size_t c = 0; c < 3; ++c) {
         m.corners[c].push_back(static_cast<std::int32_t>(t[c]));
-        points.push_back(static_cast<std::int32_t>(t[c]));
+        points.push_back(t[c]);
+        box.add(get(rest_, t[c]).cast<double>());
       }
       isRepeated_.push_back(i >= members.size());
     }
     std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    points.resize(wholeVectors(points.size()), points.back());
-    m.groupPoints.items.insert(m.groupPoints.items.end(), points.begin(), points.end());
-    m.groupPoints.endList();
+    const auto end = std::unique(points.begin(), points.end());
+    groupPoints_.items.insert(groupPoints_.items.end(), points.begin(), end);
+    groupPoints_.endList();
+    boxes_.push_back(box);
     m.depth_m.resize(m.corners[0].size());
   }
 
@@ -241,9 +247,11 @@ class Preparation {
           least_m = std::min(least_m, thickness(get(rest_, c).cast<double>(),
                                                 mesh.normals[c].cast<double>(), most_m));
         m.depth_m[t] = kDepthShare * least_m;
+        m.groups[g].deepest_m = std::max(m.groups[g].deepest_m, m.depth_m[t]);
       }
     });
-    for (const float depth : m.depth_m) m.deepest_m = std::max(m.deepest_m, depth);
+    for (const SelfContactModel::Group& g : m.groups)
+      m.deepest_m = std::max(m.deepest_m, g.deepest_m);
   }
 
   float meanEdgeLength() const {
@@ -258,21 +266,32 @@ class Preparation {
   // What touches in the rest shape already, and spreads that over the surroundings of both.
   void measureRestDistances() {
     std::vector<std::vector<RestDistance>> lists(model_.points);
+    model_.leftAlone.first.resize(model_.blocks.size() + 1);  // nothing yet
     SurfaceSearch search(model_);
     const VectorArray still(model_.points);
     search.update(rest_, still, 0);
-    const SurfaceSearch::Query query{model_.gap_m, kRestDepthScale, rest_, still};
+    const SurfaceSearch::Query query{model_.gap_m, kRestDepthScale, false, rest_, still};
     for (std::size_t b = 0; b < model_.blocks.size(); ++b)
       search.search(b, query, [&](const Touch& touch) {
         const bool crosses = touch.distance_m < kCrossing * model_.gap_m;
-        lists[touch.point].push_back({touch.group, crosses ? SelfContactModel::kLeaveAlone
-                                                           : (1 - kRestSlack) * touch.distance_m});
+        lists[touch.point].push_back(
+            {touch.group, crosses ? kLeaveAlone : (1 - kRestSlack) * touch.distance_m});
       });
     spreadOverGroups(lists);
     for (int turn = 0; turn < kSpread; ++turn) spreadOverPoints(lists);
-    for (std::vector<RestDistance>& list : lists) {
-      model_.restDistances.items.insert(model_.restDistances.items.end(), list.begin(), list.end());
+    for (std::size_t k = 0; k < lists.size(); ++k) {
+      for (const RestDistance& r : lists[k])
+        if (r.keep_m != kLeaveAlone) model_.restDistances.items.push_back(r);
       model_.restDistances.endList();
+    }
+    model_.leftAlone = {};
+    for (const PointBlock& block : model_.blocks) {
+      std::map<std::uint32_t, std::uint32_t> lanes;
+      for (std::uint32_t l = 0; l < block.count; ++l)
+        for (const RestDistance& r : lists[block.first + l])
+          if (r.keep_m == kLeaveAlone) lanes[r.group] |= 1u << l;
+      for (const auto& [group, bits] : lanes) model_.leftAlone.items.push_back({group, bits});
+      model_.leftAlone.endList();
     }
   }
 
@@ -291,15 +310,13 @@ class Preparation {
     const SelfContactModel& m = model_;
     std::vector<std::vector<std::uint32_t>> groupsOfPoint(m.points);
     for (std::uint32_t g = 0; g < m.groups.size(); ++g)
-      for (const std::int32_t p : m.groupPoints[g])
-        groupsOfPoint[static_cast<std::size_t>(p)].push_back(g);
+      for (const std::uint32_t p : groupPoints_[g]) groupsOfPoint[p].push_back(g);
     for (std::vector<RestDistance>& list : lists) {
       reduce(list);
       const std::vector<RestDistance> own = list;
       for (const RestDistance& r : own)
-        for (const std::int32_t p : m.groupPoints[r.group])
-          for (const std::uint32_t g : groupsOfPoint[static_cast<std::size_t>(p)])
-            list.push_back({g, r.keep_m});
+        for (const std::uint32_t p : groupPoints_[r.group])
+          for (const std::uint32_t g : groupsOfPoint[p]) list.push_back({g, r.keep_m});
       reduce(list);
     }
   }
@@ -317,6 +334,8 @@ class Preparation {
   const VectorArray& rest_;
   Lists<std::uint32_t> neighbors_;
   std::vector<bool> isRepeated_;  // per triangle of the model
+  Lists<std::uint32_t> groupPoints_;
+  std::vector<Box> boxes_;  // of groups
   SelfContactModel model_;
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fascia/base/aligned.h>
+#include <fascia/geometry/box_tree.h>
 #include <fascia/skin/point_kernels.h>
 
 namespace fascia {
@@ -34,23 +35,26 @@ struct SelfContactModel {
   struct Group {
     static constexpr std::size_t kCapacity = 80;  // 32 points of a mesh have about 64 triangles
     std::uint32_t first, count;                   // multiples of kLanes
+    float deepest_m;                              // largest of depth_m
   };
   // How near a point may come to a group's triangles, where that is less than the gap.
   struct RestDistance {
     std::uint32_t group;
-    float keep_m;  // kLeaveAlone: they cross in the rest shape
+    float keep_m;
   };
-  static constexpr float kLeaveAlone = -1e30f;
+  // Points of a block that cross a group in the rest shape, bit by bit.
+  struct LeftAlone {
+    std::uint32_t group, lanes;
+  };
 
   std::vector<PointBlock> blocks;  // compact patches of points that are tested
   float gap_m = 0.002f;            // distance that is kept between two sheets of skin
-  float deepest_m = 0;             // largest of depth_m
+  float deepest_m = 0;             // largest of the groups'
 
   std::vector<Group> groups;
   std::array<IndexArray, 3> corners;  // per triangle, group by group: storage indices
   FloatArray depth_m;                 // per triangle: points deeper below it have not come
                                       // through it, but through the other side of a thin limb
-  Lists<std::int32_t> groupPoints;    // per group: its corners, filled up to whole vectors
 
   std::size_t points = 0;  // storage
   FloatArray area_m2;      // per point
@@ -58,7 +62,9 @@ struct SelfContactModel {
   // point has no more.
   Lists<std::int32_t> fans;
   Lists<std::uint32_t> nearPoints;  // per point: too near on the surface to touch; itself included
-  Lists<RestDistance> restDistances;  // per point
+  Lists<RestDistance> restDistances;  // per point, sorted by group
+  Lists<LeftAlone> leftAlone;         // per block, sorted by group
+  BoxTree tree;                       // of the groups in the rest shape
 
   std::size_t triangleCount() const { return depth_m.size(); }
   std::array<std::uint32_t, 3> triangle(std::size_t t) const {

@@ -18,9 +18,8 @@ constexpr float kFacing = 0.2f;
 // The deepest points must face the surface that they came through this clearly: what came out at
 // the other side of a limb must not be pulled through its flanks.
 constexpr float kFacingDeep = -0.5f;
-// A point that is farther beside a triangle than above or below it has nothing to do with it. Near
-// the surface, in gaps, directions mean little.
-constexpr float kLeastSlope = 0.5f, kAnySlope = 0.25f;
+// So near to the surface, in gaps, it does not matter whether a point is beside a triangle.
+constexpr float kAnySlope = 0.25f;
 // Corners' unit normals that cancel each other say nothing about the surface between them.
 constexpr float kLeastNormal = 0.5f;
 
@@ -60,6 +59,19 @@ Box sweptBox(const MotionBounds& m, const Vec3& mean, double interval_s, double 
   return box;
 }
 
+std::uint32_t lanesBelow(std::uint32_t count) {
+  return count >= 32 ? ~0u : (1u << count) - 1;
+}
+
+std::uint32_t lanesLeftAlone(const SelfContactModel& model, std::size_t block,
+                             std::uint32_t group) {
+  const std::span<const SelfContactModel::LeftAlone> list = model.leftAlone[block];
+  const auto found = std::lower_bound(
+      list.begin(), list.end(), group,
+      [](const SelfContactModel::LeftAlone& l, std::uint32_t g) { return l.group < g; });
+  return found != list.end() && found->group == group ? found->lanes : 0u;
+}
+
 bool nearOnSurface(const SelfContactModel& model, std::uint32_t point, std::uint32_t triangle) {
   const std::span<const std::uint32_t> near = model.nearPoints[point];
   for (const std::uint32_t corner : model.triangle(triangle))
@@ -70,7 +82,11 @@ bool nearOnSurface(const SelfContactModel& model, std::uint32_t point, std::uint
 }  // namespace
 
 SurfaceSearch::SurfaceSearch(const SelfContactModel& model)
-    : model_(&model), frame_(model), groups_(model.groups.size()), boxes_(model.groups.size()) {}
+    : model_(&model),
+      frame_(model),
+      groups_(model.groups.size()),
+      boxes_(model.groups.size()),
+      tree_(model.tree) {}
 
 void SurfaceSearch::update(const VectorArray& position, const VectorArray& velocity,
                            float interval_s) {
@@ -87,7 +103,7 @@ void SurfaceSearch::update(const VectorArray& position, const VectorArray& veloc
   meanVelocity_ /= static_cast<double>(std::max<std::size_t>(1, groups_.size()));
   for (std::size_t g = 0; g < groups_.size(); ++g)
     boxes_[g] = sweptBox(groups_[g], meanVelocity_, interval_s, 0);
-  tree_.itemCount() == boxes_.size() ? tree_.refit(boxes_) : tree_.build(boxes_);
+  tree_.refit(boxes_);
 }
 
 void SurfaceSearch::search(std::size_t block, const Query& query, const Visit& visit) const {
@@ -97,71 +113,72 @@ void SurfaceSearch::search(std::size_t block, const Query& query, const Visit& v
   const MotionBounds points = loadLanes(b, query.position, query.velocity, frame_, lanes);
   const float range = std::max(query.ahead_m, query.depthScale * model_->deepest_m);
   const Box box = sweptBox(points, meanVelocity_, interval_s_, range);
-  tree_.visit([&](const Box& other) { return meets(box, other); },
-              [&](std::uint32_t g) {
-                PairReach reach;
-                if (!meet(points, groups_[g], query, reach)) return;
-                const std::size_t count =
-                    findCandidates(*model_, g, frame_, lanes, reach, candidates);
-                for (std::size_t c = 0; c < count; ++c) {
-                  const auto point = static_cast<std::uint32_t>(b.first + candidates[c].lane);
-                  Touch touch;
-                  touch.group = g;
-                  if (touches(point, candidates[c].triangle, reach, query.position, touch))
-                    visit(touch);
-                }
-              });
+  const auto lookAt = [&](std::uint32_t group) {
+    PairReach reach;
+    if (!meet(points, group, query, reach)) return;
+    reach.lanes = ~lanesLeftAlone(*model_, block, group) & lanesBelow(b.count);
+    if (query.nearestOnly) boundNearest(*model_, group, frame_, reach, lanes);
+    const std::size_t count = findCandidates(*model_, group, frame_, reach, lanes, candidates);
+    for (std::size_t c = 0; c < count; ++c) {
+      const auto [lane, triangle] = candidates[c];
+      Touch touch;
+      touch.point = static_cast<std::uint32_t>(b.first) + lane;
+      touch.triangle = triangle, touch.group = group;
+      if (touches(query, touch)) visit(touch);
+    }
+  };
+  tree_.visit([&](const Box& other) { return meets(box, other); }, lookAt);
 }
 
 // How a block and a group can meet; false: not at all.
-bool SurfaceSearch::meet(const MotionBounds& points, const MotionBounds& group, const Query& query,
+bool SurfaceSearch::meet(const MotionBounds& points, std::uint32_t group, const Query& query,
                          PairReach& out) const {
-  if (neverFace(points.normals, group.normals)) return false;
-  const float range = std::max(query.ahead_m, query.depthScale * model_->deepest_m);
-  float way = 0;
+  const MotionBounds& other = groups_[group];
+  if (neverFace(points.normals, other.normals)) return false;
+  const float range = std::max(query.ahead_m, query.depthScale * model_->groups[group].deepest_m);
   for (int a = 0; a < 3; ++a) {
-    // Relative to the group the points go from `back` to `on`.
-    const float back = std::min(0.f, (points.slowest[a] - group.fastest[a]) * interval_s_);
-    const float on = std::max(0.f, (points.fastest[a] - group.slowest[a]) * interval_s_);
-    out.low[a] = points.low[a] + back - range;
-    out.high[a] = points.high[a] + on + range;
-    if (out.low[a] > group.high[a] || out.high[a] < group.low[a]) return false;
-    out.above[a] = on + range;
-    out.below[a] = range - back;
-    way += std::max(on, -back) * std::max(on, -back);
+    // Seen from the group the points go by between `least` and `most`.
+    const float least = std::min(0.f, (points.slowest[a] - other.fastest[a]) * interval_s_);
+    const float most = std::max(0.f, (points.fastest[a] - other.slowest[a]) * interval_s_);
+    out.low[a] = points.low[a] + least - range;
+    out.high[a] = points.high[a] + most + range;
+    if (out.low[a] > other.high[a] || out.high[a] < other.low[a]) return false;
   }
-  out.ahead_m = query.ahead_m + std::sqrt(way);
+  out.ahead_m = query.ahead_m;
+  out.interval_s = interval_s_;
   out.depthScale = query.depthScale;
   return true;
 }
 
-bool SurfaceSearch::touches(std::uint32_t point, std::uint32_t triangle, const PairReach& reach,
-                            const VectorArray& position, Touch& out) const {
-  if (nearOnSurface(*model_, point, triangle)) return false;
-  const auto corners = model_->triangle(triangle);
-  const Vec3 p = get(position, point).cast<double>();
-  const TrianglePoint nearest = closestPointOnTriangle(p, get(position, corners[0]).cast<double>(),
-                                                       get(position, corners[1]).cast<double>(),
-                                                       get(position, corners[2]).cast<double>());
-  out.point = point, out.triangle = triangle;
-  out.weights = nearest.weights.cast<float>();
+// Completes a touch of its point, triangle and group; false: there is none.
+bool SurfaceSearch::touches(const Query& query, Touch& touch) const {
+  if (nearOnSurface(*model_, touch.point, touch.triangle)) return false;
+  const auto corners = model_->triangle(touch.triangle);
+  const auto corner = [&](std::size_t c) -> Vec3 {
+    return get(query.position, corners[c]).cast<double>();
+  };
+  const Vec3 p = get(query.position, touch.point).cast<double>();
+  const TrianglePoint nearest = closestPointOnTriangle(p, corner(0), corner(1), corner(2));
+  touch.weights = nearest.weights.cast<float>();
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   for (int c = 0; c < 3; ++c)
-    normal += out.weights[c] * get(frame_.normal, corners[static_cast<std::size_t>(c)]);
+    normal += touch.weights[c] * get(frame_.normal, corners[static_cast<std::size_t>(c)]);
   const float length = normal.norm();
   if (!(length > kLeastNormal)) return false;
-  out.normal = normal / length;
+  touch.normal = normal / length;
   const Eigen::Vector3f way = (p - nearest.position).cast<float>();
-  out.distance_m = way.dot(out.normal);
-  out.nearest_m = way.norm();
-  if (std::abs(out.distance_m) < kLeastSlope * out.nearest_m &&
-      out.nearest_m > kAnySlope * model_->gap_m)
+  touch.distance_m = way.dot(touch.normal);
+  touch.nearest_m = way.norm();
+  const float aside_m = (way - touch.distance_m * touch.normal).norm();
+  if (aside_m > kSteepest * std::abs(touch.distance_m) &&
+      touch.nearest_m > kAnySlope * model_->gap_m)
     return false;
-  const float depth = out.nearest_m / (reach.depthScale * model_->depth_m[triangle]);
-  if (out.distance_m < 0 ? !(depth <= 1) : !(out.distance_m <= reach.ahead_m)) return false;
-  out.facing = out.normal.dot(get(frame_.normal, point));
-  out.facingLimit = out.distance_m < 0 ? kFacing + depth * (kFacingDeep - kFacing) : kFacing;
-  return out.facing < out.facingLimit;
+  const bool behind = touch.distance_m < 0;
+  const float depth = touch.nearest_m / (query.depthScale * model_->depth_m[touch.triangle]);
+  if (behind && !(depth <= 1)) return false;
+  touch.facing = touch.normal.dot(get(frame_.normal, touch.point));
+  touch.facingLimit = behind ? kFacing + depth * (kFacingDeep - kFacing) : kFacing;
+  return touch.facing < touch.facingLimit;
 }
 
 }  // namespace fascia

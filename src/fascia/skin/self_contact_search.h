@@ -33,19 +33,20 @@ class SurfaceSearch {
 
   // Calls visit(Touch) for all that the block's points touch, or may reach within the interval:
   // distance ≤ ahead_m plus the way that both go towards each other. Left out is what is too near
-  // on the surface. `depthScale` times depth_m is how deep a point may be.
+  // on the surface. `depthScale` times depth_m is how deep a point may be. With `nearestOnly` only
+  // a point's nearest touch is sure to be among them.
   struct Query {
     float ahead_m, depthScale;
+    bool nearestOnly;
     const VectorArray &position, &velocity;  // as in update
   };
   using Visit = std::function<void(const Touch&)>;
   void search(std::size_t block, const Query& query, const Visit& visit) const;
 
  private:
-  bool meet(const MotionBounds& points, const MotionBounds& group, const Query& query,
+  bool meet(const MotionBounds& points, std::uint32_t group, const Query& query,
             PairReach& out) const;
-  bool touches(std::uint32_t point, std::uint32_t triangle, const PairReach& reach,
-               const VectorArray& position, Touch& out) const;
+  bool touches(const Query& query, Touch& touch) const;
 
   const SelfContactModel* model_ = nullptr;
   float interval_s_ = 0;
