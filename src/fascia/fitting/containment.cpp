@@ -74,7 +74,12 @@ Clash findClash(const BodySurface& surface, const MirrorPlane* plane, double mar
   return clash;
 }
 
-// Thinner until nothing lacks the margin.
+}  // namespace
+
+double deepestOutside_m(const BodySurface& surface, const FittedSolid& solid) {
+  return findClash(surface, nullptr, 0, solid).lack_m;
+}
+
 bool shrinkInside(const BodySurface& surface, const MirrorPlane* plane, double margin_m,
                   FittedSolid& solid) {
   const Vec3 least = kLeastLeft * solid.half_m;
@@ -86,12 +91,6 @@ bool shrinkInside(const BodySurface& surface, const MirrorPlane* plane, double m
       return false;
   }
   return false;
-}
-
-}  // namespace
-
-double deepestOutside_m(const BodySurface& surface, const FittedSolid& solid) {
-  return findClash(surface, nullptr, 0, solid).lack_m;
 }
 
 bool fitInside(const BodySurface& surface, const MirrorPlane* plane, double margin_m,

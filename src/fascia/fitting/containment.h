@@ -10,9 +10,13 @@ namespace fascia {
 // the solid outside of the skin. 0: the solid is inside.
 double deepestOutside_m(const BodySurface& surface, const FittedSolid& solid);
 
-// The target's best solid that keeps at least `margin_m` from the skin: fits, turns what it
-// violates into bounds, fits again, and at last makes it thinner. With a symmetry plane its image
-// must stay inside too. False if next to nothing would be left.
+// Makes the solid thinner until nothing of it is nearer to the skin than `margin_m`. With a
+// symmetry plane its image must stay inside too. False if less than about half of it would be left.
+bool shrinkInside(const BodySurface& surface, const MirrorPlane* plane, double margin_m,
+                  FittedSolid& solid);
+
+// The target's best solid that keeps the margin: fits, turns what it violates into bounds, fits
+// again, and at last shrinks. `solid` comes as the first guess.
 bool fitInside(const BodySurface& surface, const MirrorPlane* plane, double margin_m,
                SolidTarget target, FittedSolid& solid);
 

@@ -4,34 +4,21 @@
 #include <cmath>
 
 #include <fascia/base/parallel.h>
-#include <fascia/fitting/body_part.h>
 #include <fascia/fitting/containment.h>
 #include <fascia/fitting/coverage.h>
+#include <fascia/fitting/muscles.h>
 
 namespace fascia {
 namespace {
 
 constexpr double kLeastUsable = 0.2;  // share of a part's skin that must have room beneath
 constexpr double kLeastArea = 2e-4;   // of the body's skin: smaller parts belong to their neighbour
-constexpr Color kFlesh{0.72f, 0.28f, 0.26f};
-
-struct NamedSolid {
-  std::string suffix;  // after the joint's name
-  FittedSolid solid;
-  Color color;
-};
-
-struct PartFit {
-  std::vector<NamedSolid> solids;
-  std::string why;
-  double residual_rms_m = 0;
-};
 
 std::string millimetres(double length_m) {
   return std::to_string(static_cast<long>(std::lround(1000 * length_m))) + " mm";
 }
 
-std::string whyNone(const BodySurface& surface, const BodyPart& part) {
+std::string whyNone(const BodySurface& surface, const FleshPart& part) {
   if (part.area_m2 <= 0) return "dominates no skin";
   if (part.area_m2 < kLeastArea * surface.area_m2())
     return "dominates next to no skin: left to its neighbour";
@@ -39,22 +26,55 @@ std::string whyNone(const BodySurface& surface, const BodyPart& part) {
   return {};
 }
 
-PartFit fitPart(const BodySurface& surface, const Symmetry& symmetry, const BoneFrame& frame,
-                std::size_t joint) {
+PartFit fitPart(const FitSetting& setting, const std::vector<BoneFrame>& frames,
+                JointMeaning meaning, std::size_t joint) {
   PartFit fit;
-  const BodyPart part = findBodyPart(surface, symmetry, frame, joint);
-  fit.why = whyNone(surface, part);
+  const BoneFrame& frame = frames[joint];
+  const FleshPart part = findFleshPart(setting.surface, setting.symmetry, frame, joint);
+  fit.why = whyNone(setting.surface, part);
   if (!fit.why.empty()) return fit;
-  const SolidTarget target = wholeTarget(surface, part, frame);
-  const MirrorPlane* plane = part.paired ? &symmetry.plane : nullptr;
-  FittedSolid solid = wholeGuess(surface, part, frame);
-  if (!fitInside(surface, plane, 0.25 * surface.leastFat_m(), target, solid)) {
-    fit.why = "nothing fits inside of the skin (radius " + millimetres(part.radius_m) + ")";
-    return fit;
+  const BoneFrame* next =
+      frame.mainChild < 0 ? nullptr : &frames[static_cast<std::size_t>(frame.mainChild)];
+  fit.solids = fitMuscles(setting, part, frame, next, meaning);
+  if (fit.solids.empty()) {
+    FittedSolid solid = wholeGuess(setting.surface, part, frame);
+    const SolidTarget target = wholeTarget(setting.surface, part, frame);
+    if (!fitInside(setting.surface, setting.plane(part), setting.margin_m(), target, solid)) {
+      fit.why = "nothing fits inside of the skin (radius " + millimetres(part.radius_m) + ")";
+      return fit;
+    }
+    fit.solids.push_back({"", solid, kFlesh, 0});
+    addFillers(setting, part, frame, fit.solids);
   }
-  fit.solids.push_back({"", solid, kFlesh});
-  fit.residual_rms_m = residualRms_m(target, solid);
+  double square = 0, area_m2 = 0;
+  const std::vector<double> gaps = gaps_m(part, fit.solids);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    square += part.own[i].area_m2 * gaps[i] * gaps[i];
+    area_m2 += part.own[i].area_m2;
+  }
+  fit.residual_rms_m = std::sqrt(square / area_m2);
   return fit;
+}
+
+// Radius ∝ 1/√length: a muscle that shortens swells, at constant volume.
+std::vector<DriverDef> swelling(const NamedSolid& named, const std::string& joint) {
+  std::vector<DriverDef> drivers;
+  if (named.stretchPerRightAngle == 0) return drivers;
+  const char* const names[] = {"half_x_m", "half_y_m", "half_z_m"};
+  for (const int axis : {0, 1, 2}) {
+    DriverDef driver;
+    driver.parameter = names[axis];
+    driver.joint = joint;
+    driver.dof = Dof::rx;
+    for (const double flexion : {-0.4, 0.0, 1.0, 1.6}) {  // right angles
+      const double length = 1 + named.stretchPerRightAngle * flexion;
+      driver.points.push_back(
+          {flexion * kPi / 2,
+           named.solid.half_m[axis] * (axis == 2 ? length : 1 / std::sqrt(length))});
+    }
+    drivers.push_back(std::move(driver));
+  }
+  return drivers;
 }
 
 void addSolids(const RiggedModel& model, const std::vector<BoneFrame>& frames, std::size_t joint,
@@ -63,7 +83,10 @@ void addSolids(const RiggedModel& model, const std::vector<BoneFrame>& frames, s
   for (const NamedSolid& named : fit.solids) {
     const FittedSolid solid = plane ? named.solid.mirrored(*plane) : named.solid;
     const std::string full = named.suffix.empty() ? name : name + " " + named.suffix;
-    out.flesh.solids.push_back(solid.onJoint(full, name, frames[joint].world, named.color));
+    FleshSolidDef def = solid.onJoint(full, name, frames[joint].world, named.color);
+    if (const int next = frames[joint].mainChild; next >= 0)
+      def.drivers = swelling(named, model.joints[static_cast<std::size_t>(next)].name);
+    out.flesh.solids.push_back(std::move(def));
     out.joints[joint].solids.push_back(full);
   }
   out.joints[joint].residual_rms_m = fit.residual_rms_m;
@@ -84,9 +107,11 @@ FleshFit fitFlesh(const RiggedModel& model, const FitOptions& options) {
   const Symmetry symmetry = findSymmetry(model);
   const std::vector<BoneFrame> frames = findBoneFrames(model, surface, symmetry);
   out.skeleton = makeSkeleton(model, frames);
+  const FitSetting setting{surface, symmetry};
+  const std::vector<JointMeaning> meanings = guessMeanings(model.joints);
   std::vector<PartFit> fits(model.joints.size());
   parallelFor(fits.size(), [&](std::size_t j) {
-    if (!symmetry.mirrored(j)) fits[j] = fitPart(surface, symmetry, frames[j], j);
+    if (!symmetry.mirrored(j)) fits[j] = fitPart(setting, frames, meanings[j], j);
   });
   out.joints.resize(model.joints.size());
   const std::vector<std::size_t> points = dominatedPoints(model);

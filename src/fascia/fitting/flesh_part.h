@@ -10,7 +10,7 @@ namespace fascia {
 
 // The piece of the body that one joint moves, as its solids' fit wants it. For joints that have a
 // mirror image the image's skin is included, mirrored: both get the same solids.
-struct BodyPart {
+struct FleshPart {
   std::size_t joint = 0;
   bool central = false, paired = false;
   Vec3 axis = Vec3::UnitY();         // along the bone
@@ -25,11 +25,20 @@ struct BodyPart {
   std::vector<Vec3> near;            // the rest of the skin around
 };
 
-BodyPart findBodyPart(const BodySurface& surface, const Symmetry& symmetry, const BoneFrame& frame,
-                      std::size_t joint);
+FleshPart findFleshPart(const BodySurface& surface, const Symmetry& symmetry,
+                        const BoneFrame& frame, std::size_t joint);
 
+// The same part with only some of its skin.
+FleshPart subPart(const Symmetry& symmetry, const BoneFrame& frame, const FleshPart& whole,
+                  std::vector<SurfaceSample> own, bool central);
+
+// Radius of the ball of flesh around a point that fits under skin and fat; 0 outside.
+double depth_m(const BodySurface& surface, const Vec3& p);
+
+// Reaches the part's skin and keeps under all the skin around.
+SolidTarget surfaceTarget(const BodySurface& surface, const FleshPart& part);
 // A target for one solid that fills the whole part, and where to begin.
-SolidTarget wholeTarget(const BodySurface& surface, const BodyPart& part, const BoneFrame& frame);
-FittedSolid wholeGuess(const BodySurface& surface, const BodyPart& part, const BoneFrame& frame);
+SolidTarget wholeTarget(const BodySurface& surface, const FleshPart& part, const BoneFrame& frame);
+FittedSolid wholeGuess(const BodySurface& surface, const FleshPart& part, const BoneFrame& frame);
 
 }  // namespace fascia

@@ -1,4 +1,4 @@
-#include <fascia/fitting/body_part.h>
+#include <fascia/fitting/flesh_part.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ SurfaceSample image(SurfaceSample sample, const MirrorPlane& plane) {
 }
 
 struct Collector {
-  BodyPart& part;
+  FleshPart& part;
   double leastRadius_m;
   Box box;
   double usable_m2 = 0;
@@ -49,7 +49,7 @@ struct Collector {
   }
 };
 
-void addNear(const BodySurface& surface, const MirrorPlane* plane, Box box, BodyPart& part) {
+void addNear(const BodySurface& surface, const MirrorPlane* plane, Box box, FleshPart& part) {
   const Vec3 margin = Vec3::Constant(part.radius_m);
   box.low -= margin;
   box.high += margin;
@@ -64,7 +64,7 @@ void addNear(const BodySurface& surface, const MirrorPlane* plane, Box box, Body
 }
 
 // Directions across the axis in which the part is widest and narrowest.
-Vec3 widestAcross(const BodyPart& part, const Vec3& centre) {
+Vec3 widestAcross(const FleshPart& part, const Vec3& centre) {
   Mat3 moment = Mat3::Zero();
   for (const SurfaceSample& s : part.own) {
     Vec3 d = s.position_m - centre;
@@ -78,7 +78,7 @@ Vec3 widestAcross(const BodyPart& part, const Vec3& centre) {
 }
 
 // Mean of the points half way through the body: on the axis even if the part is only a patch of it.
-Vec3 middleOf(const BodyPart& part) {
+Vec3 middleOf(const FleshPart& part) {
   Vec3 sum = Vec3::Zero();
   double area_m2 = 0;
   for (const SurfaceSample& s : part.own) {
@@ -88,28 +88,12 @@ Vec3 middleOf(const BodyPart& part) {
   return area_m2 > 0 ? Vec3(sum / area_m2) : sum;
 }
 
-}  // namespace
-
-BodyPart findBodyPart(const BodySurface& surface, const Symmetry& symmetry, const BoneFrame& frame,
-                      std::size_t joint) {
-  BodyPart part;
-  part.joint = joint;
-  part.central = symmetry.central(joint);
-  part.paired = symmetry.paired(joint);
-  part.axis = frame.world.rotation.col(1);
-  Collector collector{part, kLeastRoom * surface.leastFat_m(), {}, 0};
-  for (const SurfaceSample& s : surface.samples()) {
-    collector.collect(s, joint);
-    if (part.paired)
-      collector.collect(image(s, symmetry.plane),
-                        static_cast<std::size_t>(symmetry.partner[joint]));
-  }
-  if (part.own.empty()) return part;
-  part.usable = collector.usable_m2 / part.area_m2;
+// Size, extent and directions of what `own` holds.
+void measureShape(const Symmetry& symmetry, const Vec3& origin, FleshPart& part) {
   std::vector<double> radii, along;
   for (const SurfaceSample& s : part.own) {
     radii.push_back(s.radius_m);
-    along.push_back(part.axis.dot(s.position_m - frame.world.translation_m));
+    along.push_back(part.axis.dot(s.position_m - origin));
   }
   part.radius_m = quantile(radii, 0.5);
   part.low_m = quantile(along, 0.03);
@@ -119,13 +103,44 @@ BodyPart findBodyPart(const BodySurface& surface, const Symmetry& symmetry, cons
     part.middle_m -= symmetry.plane.distance_m(part.middle_m) * symmetry.plane.normal();
   part.across = part.central ? symmetry.plane.normal()
                              : Vec3(part.axis.cross(widestAcross(part, part.middle_m)));
+}
+
+}  // namespace
+
+FleshPart findFleshPart(const BodySurface& surface, const Symmetry& symmetry,
+                        const BoneFrame& frame, std::size_t joint) {
+  FleshPart part;
+  part.joint = joint;
+  part.central = symmetry.central(joint);
+  part.paired = symmetry.paired(joint);
+  part.axis = frame.world.rotation.col(1);
+  Collector collector{part, kLeastRoom * surface.leastFat_m(), {}, 0};
+  for (const SurfaceSample& s : surface.samples()) {
+    collector.collect(s, joint);
+    if (part.central || part.paired)
+      collector.collect(image(s, symmetry.plane),
+                        static_cast<std::size_t>(symmetry.partner[joint]));
+  }
+  if (part.own.empty()) return part;
+  part.usable = collector.usable_m2 / part.area_m2;
+  measureShape(symmetry, frame.world.translation_m, part);
   const bool doubled = part.central || part.paired;
   if (doubled) part.area_m2 *= 0.5;
   addNear(surface, doubled ? &symmetry.plane : nullptr, collector.box, part);
   return part;
 }
 
-SolidTarget wholeTarget(const BodySurface& surface, const BodyPart& part, const BoneFrame& frame) {
+FleshPart subPart(const Symmetry& symmetry, const BoneFrame& frame, const FleshPart& whole,
+                  std::vector<SurfaceSample> own, bool central) {
+  FleshPart part = whole;
+  part.central = central;
+  part.own = std::move(own);
+  part.blend.clear();
+  measureShape(symmetry, frame.world.translation_m, part);
+  return part;
+}
+
+SolidTarget surfaceTarget(const BodySurface& surface, const FleshPart& part) {
   SolidTarget target;
   target.size_m = part.radius_m;
   target.symmetric = part.central;
@@ -143,15 +158,25 @@ SolidTarget wholeTarget(const BodySurface& surface, const BodyPart& part, const 
       kBoundWeight * static_cast<double>(boundStep) / static_cast<double>(part.near.size() + 1);
   for (std::size_t i = 0; i < part.near.size(); i += boundStep)
     target.bounds.push_back({part.near[i], surface.leastFat_m(), weight});
+  return target;
+}
+
+double depth_m(const BodySurface& surface, const Vec3& p) {
+  if (!surface.inside(p)) return 0;
+  const double deep_m = -surface.signedDistance(p);
+  return std::max(0.0, deep_m - surface.fat_m(deep_m));
+}
+
+SolidTarget wholeTarget(const BodySurface& surface, const FleshPart& part, const BoneFrame& frame) {
+  SolidTarget target = surfaceTarget(surface, part);
   for (const Vec3& pin : {frame.world.translation_m, frame.end_m}) {
-    const double deep_m = surface.inside(pin) ? -surface.signedDistance(pin) : 0;
-    const double depth_m = 0.5 * (deep_m - surface.fat_m(deep_m));
-    if (depth_m > 0) target.pins.push_back({pin, std::min(depth_m, part.radius_m), 0.3});
+    const double wanted_m = 0.5 * depth_m(surface, pin);
+    if (wanted_m > 0) target.pins.push_back({pin, std::min(wanted_m, part.radius_m), 0.3});
   }
   return target;
 }
 
-FittedSolid wholeGuess(const BodySurface& surface, const BodyPart& part, const BoneFrame& frame) {
+FittedSolid wholeGuess(const BodySurface& surface, const FleshPart& part, const BoneFrame& frame) {
   FittedSolid guess;
   const Vec3 y = (part.across - part.across.dot(part.axis) * part.axis).normalized();
   const Vec3 x = y.cross(part.axis);
