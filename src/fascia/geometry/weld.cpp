@@ -119,8 +119,8 @@ std::vector<HalfEdge> sortedHalfEdges(std::span<const Triangle> triangles,
     }
   }
   std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return std::tie(a.lowPlace, a.highPlace, a.triangle, a.forward) <
-           std::tie(b.lowPlace, b.highPlace, b.triangle, b.forward);
+    return std::tie(a.lowPlace, a.highPlace, a.lowVertex, a.highVertex, a.triangle, a.forward) <
+           std::tie(b.lowPlace, b.highPlace, b.lowVertex, b.highVertex, b.triangle, b.forward);
   });
   return edges;
 }
@@ -133,10 +133,7 @@ class EdgeWelder {
 
   // All half edges between two places.
   void weld(std::span<const HalfEdge> edges) {
-    border_.clear();
-    for (const HalfEdge& edge : edges) {
-      if (!hasTwin(edge, edges)) border_.push_back(edge);
-    }
+    collectBorder(edges);
     // So many borders along one edge mean nothing; all pairs of them would take for ever.
     constexpr std::size_t kMostBorders = 64;
     if (border_.size() < 2 || border_.size() > kMostBorders) return;
@@ -157,11 +154,19 @@ class EdgeWelder {
     std::size_t a, b;
   };
 
-  static bool hasTwin(const HalfEdge& edge, std::span<const HalfEdge> edges) {
-    return std::any_of(edges.begin(), edges.end(), [&](const HalfEdge& other) {
-      return other.forward != edge.forward && other.lowVertex == edge.lowVertex &&
-             other.highVertex == edge.highVertex;
-    });
+  // Half edges of one pair of vertices follow each other; if they run both ways, triangles meet.
+  void collectBorder(std::span<const HalfEdge> edges) {
+    border_.clear();
+    for (std::size_t i = 0; i < edges.size();) {
+      std::size_t end = i, forward = 0;
+      while (end < edges.size() && edges[end].lowVertex == edges[i].lowVertex &&
+             edges[end].highVertex == edges[i].highVertex) {
+        forward += edges[end++].forward ? 1 : 0;
+      }
+      if (forward == 0 || forward == end - i)
+        border_.insert(border_.end(), &edges[i], &edges[i] + (end - i));
+      i = end;
+    }
   }
 
   void collectPairs() {

@@ -7,7 +7,7 @@ namespace fascia {
 namespace {
 
 // An accessor without data is all zeros: its count is checked against nothing else.
-constexpr std::size_t kMostZeros = 1u << 22;
+constexpr std::size_t kMostZeros = 1u << 20;
 
 // Where the components of an element lie. Columns of matrices begin at multiples of four bytes
 // (glTF 2.0, 3.6.2.4).

@@ -12,7 +12,7 @@ namespace fascia {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{2} << 30;  // of a file or of a buffer beside it
-constexpr JsonLimits kLimits{std::size_t{1} << 29, 8'000'000, 64};
+constexpr JsonLimits kLimits{std::size_t{1} << 29, 4'000'000, 64};
 constexpr std::string_view kMagic = "glTF";
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 

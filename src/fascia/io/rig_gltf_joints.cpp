@@ -23,18 +23,27 @@ struct RawSkin {
   bool anySound = false;
 };
 
-RawSkin readSkin(const GltfDocument& document, int index, std::size_t nodeCount) {
+// An accessor may be shared by any number of skins: what all of them read together is limited.
+std::vector<float> readMatrices(const GltfDocument& document, const GltfPlace& place,
+                                std::size_t& numbersRead) {
+  constexpr std::size_t kMostNumbers = 16'000'000;
+  if (!place) return {};
+  const int accessor = place.index(static_cast<int>(document.root()["accessors"].size()));
+  numbersRead += 16 * document.elementCount(accessor);
+  if (numbersRead > kMostNumbers) place.fail("too many inverse bind matrices in one file");
+  return document.floats(accessor, 16);
+}
+
+RawSkin readSkin(const GltfDocument& document, int index, std::size_t nodeCount,
+                 std::size_t& numbersRead) {
   const GltfPlace place = document.root()["skins"].at(at(index));
   const GltfPlace joints = place["joints"];
   RawSkin skin;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     skin.nodes.push_back(joints.at(i).index(static_cast<int>(nodeCount)));
   }
-  std::vector<float> matrices;
-  if (place["inverseBindMatrices"]) {
-    const auto accessors = static_cast<int>(document.root()["accessors"].size());
-    matrices = document.floats(place["inverseBindMatrices"].index(accessors), 16);
-  }
+  const std::vector<float> matrices =
+      readMatrices(document, place["inverseBindMatrices"], numbersRead);
   for (std::size_t i = 0; i < skin.nodes.size(); ++i) {
     Affine inverse = Affine::Identity();
     bool sound = 16 * (i + 1) <= matrices.size();
@@ -96,12 +105,13 @@ class RigBuilder {
   void readSkins() {
     rig_.skins.resize(document_.root()["skins"].size());
     raw_.resize(rig_.skins.size());
+    std::size_t numbersRead = 0;
     for (const int n : scene_.order) {
       const GltfNode& node = scene_.nodes[at(n)];
       if (!node.inScene || node.mesh < 0 || node.skin < 0 || rig_.skins[at(node.skin)].used)
         continue;
       rig_.skins[at(node.skin)].used = true;
-      raw_[at(node.skin)] = readSkin(document_, node.skin, scene_.nodes.size());
+      raw_[at(node.skin)] = readSkin(document_, node.skin, scene_.nodes.size(), numbersRead);
       order_.push_back(node.skin);
     }
   }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fascia/io/rig_gltf_mesh.h>
 
@@ -47,17 +48,39 @@ void readTransform(const GltfPlace& transform, GltfTextureUse& use) {
   use.uvSet = transform["texCoord"].indexOr(use.uvSet, 8);
 }
 
-void readPicture(const GltfDocument& document, int texture, RiggedModel& model,
-                 RigMaterial& material) {
-  const GltfPlace root = document.root();
-  const GltfPlace source = root["textures"].at(static_cast<std::size_t>(texture))["source"];
-  if (!source) return;
-  material.texture = document.image(source.index(static_cast<int>(root["images"].size())));
-  if (isPicture(material.texture)) return;
-  material.texture.clear();
-  model.notes.push_back("the picture of material " + jsonText(material.name) +
-                        " is missing, or neither PNG nor JPEG: its plain colour is shown");
-}
+// Takes pictures along; materials that share one get copies of it, up to a limit.
+class PictureReader {
+ public:
+  PictureReader(const GltfDocument& document, RiggedModel& model)
+      : document_(document), model_(model), pictures_(document.root()["images"].size()) {}
+
+  void read(int texture, RigMaterial& material) {
+    const GltfPlace root = document_.root();
+    const GltfPlace source = root["textures"].at(static_cast<std::size_t>(texture))["source"];
+    if (!source) return;
+    const int image = source.index(static_cast<int>(pictures_.size()));
+    std::optional<std::vector<std::uint8_t>>& picture = pictures_[static_cast<std::size_t>(image)];
+    if (!picture) {
+      picture = document_.image(image);
+      if (!isPicture(*picture)) picture->clear();
+    }
+    if (picture->empty() || picture->size() > kMostBytes - taken_) {
+      model_.notes.push_back("the picture of material " + jsonText(material.name) +
+                             " is missing, too large, or neither PNG nor JPEG: left out");
+      return;
+    }
+    taken_ += picture->size();
+    material.texture = *picture;
+  }
+
+ private:
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // of all materials
+
+  const GltfDocument& document_;
+  RiggedModel& model_;
+  std::vector<std::optional<std::vector<std::uint8_t>>> pictures_;
+  std::size_t taken_ = 0;
+};
 
 }  // namespace
 
@@ -74,7 +97,7 @@ GltfTextureUse baseTextureOf(const GltfDocument& document, int material) {
 
 void readGltfMaterials(const GltfDocument& document, RiggedModel& model) {
   const GltfPlace materials = document.root()["materials"];
-  std::vector<int> firstWithTexture(document.root()["textures"].size(), -1);
+  PictureReader pictures(document, model);
   for (std::size_t m = 0; m < materials.size(); ++m) {
     const GltfPlace place = materials.at(m), metal = place["pbrMetallicRoughness"];
     RigMaterial& material = model.materials.emplace_back();
@@ -87,14 +110,7 @@ void readGltfMaterials(const GltfDocument& document, RiggedModel& model) {
     material.metallic = factor(metal["metallicFactor"], glossy ? 0 : 1, 1);
     material.doubleSided = place["doubleSided"].flagOr(false);
     const int texture = baseTextureOf(document, static_cast<int>(m)).texture;
-    if (texture < 0) continue;
-    int& first = firstWithTexture[static_cast<std::size_t>(texture)];
-    if (first >= 0) {  // one picture is read once
-      material.texture = model.materials[static_cast<std::size_t>(first)].texture;
-      continue;
-    }
-    first = static_cast<int>(m);
-    readPicture(document, texture, model, material);
+    if (texture >= 0) pictures.read(texture, material);
   }
 }
 

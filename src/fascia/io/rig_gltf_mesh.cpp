@@ -10,7 +10,7 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kMostVertices = 20'000'000;
+constexpr std::size_t kMostVertices = 4'000'000, kMostCorners = 6 * kMostVertices;
 constexpr int kTriangles = 4, kStrip = 5, kFan = 6;
 
 std::size_t at(int i) {
@@ -313,9 +313,10 @@ class MeshReader {
     std::vector<std::uint32_t> run;
     if (place["indices"]) {
       const int accessor = place["indices"].index(accessorCount());
-      constexpr std::size_t kMostCorners = 6 * kMostVertices;
-      if (document_.elementCount(accessor) > kMostCorners - 3 * model_.drawnTriangles.size()) {
-        place["indices"].fail("too many triangles in one character");
+      corners_ += document_.elementCount(accessor);
+      if (corners_ > kMostCorners) {
+        place["indices"].fail("more than " + std::to_string(kMostCorners) +
+                              " corners of triangles");
       }
       run = document_.integers(accessor, 1);
     } else {
@@ -391,6 +392,7 @@ class MeshReader {
   std::vector<PointWeights> weights_;
   std::vector<bool> hasNormal_;
   std::vector<Unskinned> unskinned_;
+  std::size_t corners_ = 0;  // read so far, also those that were left out
   Mended mended_;
 };
 

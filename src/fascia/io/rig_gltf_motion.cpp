@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <fascia/io/rig_gltf_clip.h>
@@ -11,24 +12,43 @@ namespace {
 
 constexpr double kMostJointFrames = 5e6;  // 28 bytes each
 constexpr double kSlowest_hz = 1;         // a motion that would be coarser is left out
+constexpr double kMostClipNodes = 2e7;    // clips times nodes: every clip begins with all nodes
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
+}
+
+// The joints' nodes and those above them, parents first: no other moves a joint.
+std::vector<int> nodesAboveJoints(const GltfScene& scene, const GltfRig& rig) {
+  std::vector<bool> isAbove(scene.nodes.size(), false);
+  for (auto n = scene.order.rbegin(); n != scene.order.rend(); ++n) {
+    if (rig.jointOfNode[at(*n)] >= 0) isAbove[at(*n)] = true;
+    const int parent = scene.nodes[at(*n)].parent;
+    if (isAbove[at(*n)] && parent >= 0) isAbove[at(parent)] = true;
+  }
+  std::vector<int> above;
+  for (const int n : scene.order) {
+    if (isAbove[at(n)]) above.push_back(n);
+  }
+  return above;
 }
 
 // Evaluates one clip, time after time.
 class ClipPlayer {
  public:
   ClipPlayer(const GltfScene& scene, const GltfRig& rig, const RiggedModel& model,
-             const GltfClip& clip)
-      : scene_(scene), rig_(rig), model_(model), clip_(clip), nodes_(scene.nodes) {
+             const std::vector<int>& above, const GltfClip& clip)
+      : scene_(scene), rig_(rig), clip_(clip), nodes_(scene.nodes), above_(above) {
     local_.reserve(nodes_.size());
     for (const GltfNode& node : nodes_) local_.push_back(node.local());
     keys_.assign(clip.channels.size(), 0);
     joints_.resize(model.joints.size());
     for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j] = model.joints[j].rest_world;
     stretched_.assign(joints_.size(), false);
-    markNodesAboveJoints();
+    world_.resize(nodes_.size());
+    std::set<int> moved;
+    for (const GltfChannel& channel : clip.channels) moved.insert(channel.node);
+    moved_.assign(moved.begin(), moved.end());
   }
 
   // World frames of all joints.
@@ -51,24 +71,6 @@ class ClipPlayer {
   }
 
  private:
-  void markNodesAboveJoints() {
-    std::vector<bool> above(nodes_.size(), false);
-    for (auto n = scene_.order.rbegin(); n != scene_.order.rend(); ++n) {
-      if (rig_.jointOfNode[at(*n)] >= 0) above[at(*n)] = true;
-      const int parent = nodes_[at(*n)].parent;
-      if (above[at(*n)] && parent >= 0) above[at(parent)] = true;
-    }
-    for (const int n : scene_.order) {
-      if (above[at(n)]) above_.push_back(n);
-    }
-    std::set<int> moved;
-    for (const GltfChannel& channel : clip_.channels) {
-      if (above[at(channel.node)]) moved.insert(channel.node);
-    }
-    moved_.assign(moved.begin(), moved.end());
-    world_.resize(nodes_.size());
-  }
-
   void apply(const GltfChannel& channel, double time_s, std::size_t& key) {
     GltfNode& node = nodes_[at(channel.node)];
     const Eigen::Vector4d value = channel.valueAt(time_s, key);
@@ -95,11 +97,11 @@ class ClipPlayer {
 
   const GltfScene& scene_;
   const GltfRig& rig_;
-  const RiggedModel& model_;
   const GltfClip& clip_;
   std::vector<GltfNode> nodes_;
   std::vector<Affine> local_, world_;
-  std::vector<int> above_, moved_;  // nodes: joints and what is above them; animated ones of these
+  const std::vector<int>& above_;
+  std::vector<int> moved_;  // nodes
   std::vector<std::size_t> keys_;
   std::vector<Transform> joints_;
   std::vector<bool> stretched_;
@@ -147,12 +149,14 @@ Plan planOf(const GltfClip& clip, double rate_hz) {
   return {steps / duration, static_cast<std::size_t>(std::min(steps, 1e15)) + 1};
 }
 
-std::vector<Plan> planMotions(const std::vector<GltfClip>& clips, RiggedModel& model) {
+// `nodes`: how many are evaluated per frame.
+std::vector<Plan> planMotions(const std::vector<GltfClip>& clips, std::size_t nodes,
+                              RiggedModel& model) {
   std::vector<Plan> plans;
   double jointFrames = 0;
   for (const GltfClip& clip : clips) {
     plans.push_back(planOf(clip, clip.naturalRate_hz()));
-    jointFrames += static_cast<double>(plans.back().frames * model.joints.size());
+    jointFrames += static_cast<double>(plans.back().frames) * static_cast<double>(nodes);
   }
   if (jointFrames <= kMostJointFrames) return plans;
   const double share = kMostJointFrames / jointFrames;
@@ -182,19 +186,26 @@ SampledMotion play(ClipPlayer& player, const GltfClip& clip, const Plan& plan,
 
 void readGltfMotions(const GltfDocument& document, const GltfScene& scene, const GltfRig& rig,
                      RiggedModel& model) {
-  const std::vector<GltfClip> clips = readGltfClips(document, scene, model.notes);
-  const std::vector<Plan> plans = planMotions(clips, model);
-  std::set<std::string> names;
+  std::vector<GltfClip> clips = readGltfClips(document, scene, model.notes);
+  const auto most =
+      static_cast<std::size_t>(kMostClipNodes / static_cast<double>(scene.nodes.size()));
+  if (clips.size() > most) {
+    model.notes.push_back("more than " + std::to_string(most) +
+                          " motions: the others are left out");
+    clips.resize(most);
+  }
+  const std::vector<int> above = nodesAboveJoints(scene, rig);
+  const std::vector<Plan> plans = planMotions(clips, above.size(), model);
+  std::map<std::string, int> names;
   for (std::size_t i = 0; i < clips.size(); ++i) {
     if (plans[i].frames > 2 && plans[i].rate_hz < kSlowest_hz) {
       model.notes.push_back("the motion " + jsonText(clips[i].name) + " is too long: left out");
       continue;
     }
-    ClipPlayer player(scene, rig, model, clips[i]);
+    ClipPlayer player(scene, rig, model, above, clips[i]);
     SampledMotion motion = play(player, clips[i], plans[i], model);
-    for (int n = 2; !names.insert(motion.name).second; ++n) {
-      motion.name = clips[i].name + " (" + std::to_string(n) + ")";
-    }
+    const int number = ++names[motion.name];
+    if (number > 1) motion.name += " (" + std::to_string(number) + ")";
     if (player.stretchedCount() > 0) {
       model.notes.push_back(std::to_string(player.stretchedCount()) +
                             " joints change their size in " + jsonText(motion.name) +

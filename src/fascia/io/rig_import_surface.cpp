@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <set>
 #include <unordered_set>
 
@@ -60,9 +61,9 @@ void keepSoundTriangles(RiggedModel& model) {
   }
 }
 
-std::string twoDigits(double value) {
+std::string threeDigits(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, value < 0.01 ? "%.1e" : "%.3g", value);
+  std::snprintf(text, sizeof text, "%.3g", value);
   return text;
 }
 
@@ -100,14 +101,14 @@ void noteOddSize(double scale, RiggedModel& model) {
   const Vec3 size = box.size();
   const double height = model.height_m(), longest = size.maxCoeff();
   if (longest > kLargest_m || longest < kSmallest_m) {
-    const bool large = longest > kLargest_m;
-    const double factor = large ? (longest > 500 ? 0.001 : 0.01) : (longest < 0.005 ? 1000 : 100);
-    const char* unit = large ? (longest > 500 ? "millimetres" : "centimetres")
-                             : (longest < 0.005 ? "kilometres" : "hectometres");
-    std::string note = "this character is " + twoDigits(height) + " m tall and " +
-                       twoDigits(longest) + " m long; if its file is in " + unit +
-                       " give --scale " + twoDigits(factor * scale);
-    model.notes.push_back(std::move(note));
+    const bool large = longest > kLargest_m, milli = longest > 500;
+    std::string note = "this character is " + threeDigits(height) + " m tall and " +
+                       threeDigits(longest) + " m long; if ";
+    note += !large  ? "it should be larger"
+            : milli ? "its file is in millimetres"
+                    : "its file is in centimetres";
+    const double factor = !large ? 100 : milli ? 0.001 : 0.01;
+    model.notes.push_back(note + " give --scale " + threeDigits(factor * scale));
   }
   // A person on the back: long along z, flat along y, wide along x. Animals are no flatter than a
   // third of their length and stand on their feet, at y = 0.
@@ -149,24 +150,23 @@ bool packWeights(std::vector<std::pair<std::uint16_t, float>>& influences, Point
 }
 
 void makeNamesUnique(RiggedModel& model) {
-  std::set<std::string> taken;
+  std::set<std::string> taken, used;
+  std::map<std::string, int> counters;
   for (const RigJoint& joint : model.joints) taken.insert(joint.name);
-  std::set<std::string> used;
   std::size_t unnamed = 0, doubled = 0;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     std::string& name = model.joints[j].name;
     const bool none = name.empty();
     if (!none && used.insert(name).second) continue;
     ++(none ? unnamed : doubled);
-    std::string fresh = none ? "joint " + std::to_string(j) : name;
-    for (int n = 2; taken.count(fresh) > 0; ++n) {
-      fresh = (none ? "joint " + std::to_string(j) : name) + " (" + std::to_string(n) + ")";
-    }
-    taken.insert(fresh);
+    const std::string stem = none ? "joint " + std::to_string(j) : name;
+    std::string fresh = stem;
+    int& counter = counters[stem];
+    while (!taken.insert(fresh).second) fresh = stem + " (" + std::to_string(++counter + 1) + ")";
     used.insert(fresh);
     name = std::move(fresh);
   }
-  if (unnamed > 0) model.notes.push_back(std::to_string(unnamed) + " joints had no name");
+  if (unnamed > 0) model.notes.push_back(std::to_string(unnamed) + " joints had no name: numbered");
   if (doubled > 0) {
     model.notes.push_back(std::to_string(doubled) + " joints had another joint's name: numbered");
   }
