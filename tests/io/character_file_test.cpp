@@ -49,22 +49,28 @@ TEST(CharacterFile, RigTakesThePlaceOfTheGrid) {
   EXPECT_EQ(def.rig->scale, 0.01);
   EXPECT_EQ(def.rig->model, nullptr);  // only files on disk have others beside them
   EXPECT_EQ(def.skin->material.drag_Ns_per_m3, 2);
+  EXPECT_EQ(def.skin->fat.bulk_Pa, 900);
+  EXPECT_TRUE(def.skin->contact.self);
+  ASSERT_EQ(def.skin->parts.size(), 2u);
+  EXPECT_TRUE(def.skin->parts[0].rigid);
+  EXPECT_FALSE(def.skin->parts[1].rigid);
   EXPECT_EQ(characterText(def), sample::kRigged);
 }
 
 TEST(CharacterFile, SkinNeedsEndsOrARig) {
   const auto bare = faults(replaced(sample::kRigged, "\"rig\"", "\"rag\""));
-  ASSERT_EQ(bare.size(), 3u);
+  ASSERT_EQ(bare.size(), 4u);
   EXPECT_EQ(bare[0].where.pointer, "/rag");
   EXPECT_EQ(bare[1].where.pointer, "/skin");
   EXPECT_EQ(bare[1].where.line, 7);
   EXPECT_THAT(bare[1].text(), HasSubstr("\"bottom\" is missing"));
   EXPECT_THAT(bare[2].text(), HasSubstr("\"top\" is missing"));
+  EXPECT_EQ(bare[3].where.pointer, "/skin/parts");
   const auto both =
       faults(replaced(sample::kRigged, "\"material\"", "\"grid\": [16, 8], \"material\""));
   ASSERT_EQ(both.size(), 1u);
   EXPECT_EQ(both[0].where.pointer, "/skin/grid");
-  EXPECT_THAT(both[0].message, HasSubstr("a skin on a rig has no \"grid\""));
+  EXPECT_THAT(both[0].message, HasSubstr("does not go with \"rig\""));
 }
 
 TEST(CharacterFile, FullTextIsUnderstood) {

@@ -25,7 +25,12 @@ inline const char* const kRigged = R"({
   "skeleton": [{"name": "root"}],
   "solids": [{"name": "belly", "joint": "root", "shape": "sphere", "radius_m": 0.2}],
   "rig": {"file": "meshes/fox.glb", "scale": 0.01},
-  "skin": {"material": {"drag_Ns_per_m3": 2}, "fat": {"thickness_m": 0.004}}
+  "skin": {
+    "material": {"drag_Ns_per_m3": 2},
+    "fat": {"thickness_m": 0.004, "compressible": 0.4, "bulk_Pa": 900},
+    "contact": {"self": true, "gap_m": 0.001},
+    "parts": [{"name": "eyes"}, {"name": "ears", "rigid": false}]
+  }
 }
 )";
 

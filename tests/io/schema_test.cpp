@@ -69,6 +69,8 @@ TEST(Schema, RefusesSkinsWithoutSurfaceOrWithTwo) {
   }
   wrong.push_back(rigged);
   wrong.back()["skin"]["grid"] = {16, 16};
+  wrong.push_back(grid);
+  wrong.back()["skin"]["parts"] = nlohmann::json::array();
   wrong.push_back(rigged);
   wrong.back().erase("rig");
   wrong.push_back(rigged);

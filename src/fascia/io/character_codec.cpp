@@ -39,7 +39,7 @@ CodecPtr<RigDef> rigCodec() {
   codec
       ->field("file", &RigDef::file, names(), "glTF or GLB in the folder of this file, or below it",
               Object::Need::required)
-      .field("scale", &RigDef::scale, numbers(positive(1e6)),
+      .field("scale", &RigDef::scale, numbers({1e-6, 1e6}),
              "Of all its lengths; 0.01 for a file in centimetres");
   return codec;
 }
@@ -55,39 +55,42 @@ class CharacterCodec final : public ObjectCodec<CharacterDef> {
     const Json* skin = json.find("skin");
     if (!skin || !skin->is(Json::Kind::object)) return;
     const JsonPath at = path["skin"];
-    if (json.find("rig")) {
-      for (const char* key : kGridKeys)
-        if (const Json* surplus = skin->find(key))
-          reading.fault(*surplus, at[key], "a skin on a rig has no " + shown(key),
-                        "the rig's mesh is the skin: leave this out, or leave out \"rig\"");
-    } else {
-      for (const char* key : {"bottom", "top"})
+    const bool onRig = json.find("rig");
+    if (!onRig)
+      for (const char* key : kEnds)
         if (!skin->find(key))
           reading.fault(*skin, at, "the key " + shown(key) + " is missing",
                         "where the skin's tube ends; not needed with \"rig\"");
-    }
+    for (const char* key : onRig ? kOfGrids : kOfRigs)
+      if (const Json* surplus = skin->find(key))
+        reading.fault(*surplus, at[key],
+                      shown(key) + (onRig ? " does not go with \"rig\"" : " needs a \"rig\""),
+                      onRig ? "the rig's mesh is the skin" : "a grid has no pieces");
   }
 
   Json schema() const override {
-    Json::List gridKeys;
-    for (const char* key : kGridKeys) gridKeys.push_back(requiring({key}));
-    Json anyGridKey, onRig, onGrid, out = ObjectCodec::schema();
-    anyGridKey.set("not", Json::Object{{"anyOf", std::move(gridKeys)}});
-    onRig = requiring({"rig"});
-    onRig.set("properties", Json::Object{{"skin", std::move(anyGridKey)}});
+    Json out = ObjectCodec::schema();
+    Json onRig = requiring({"rig"}), onGrid;
+    onRig.set("properties", Json::Object{{"skin", withoutAny(kOfGrids)}});
+    Json grid = withoutAny(kOfRigs);
+    grid.set("required", listOfTexts(kEnds));
     onGrid.set("not", requiring({"rig"}));
-    onGrid.set("properties", Json::Object{{"skin", requiring({"bottom", "top"})}});
+    onGrid.set("properties", Json::Object{{"skin", std::move(grid)}});
     out.set("anyOf", Json::List{std::move(onRig), std::move(onGrid)});
     return out;
   }
 
  private:
-  static constexpr const char* kGridKeys[] = {"grid", "bottom", "top"};
+  using Keys = std::initializer_list<const char*>;
+  static constexpr Keys kEnds = {"bottom", "top"}, kOfGrids = {"grid", "bottom", "top"},
+                        kOfRigs = {"parts"};
 
-  static Json requiring(std::initializer_list<const char*> keys) {
-    Json::List list;
-    for (const char* key : keys) list.emplace_back(key);
-    return Json::Object{{"required", std::move(list)}};
+  static Json::List listOfTexts(Keys keys) { return Json::List(keys.begin(), keys.end()); }
+  static Json requiring(Keys keys) { return Json::Object{{"required", listOfTexts(keys)}}; }
+  static Json withoutAny(Keys keys) {
+    Json::List each;
+    for (const char* key : keys) each.push_back(requiring({key}));
+    return Json::Object{{"not", Json::Object{{"anyOf", std::move(each)}}}};
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <fascia/io/character_codecs.h>
 #include <fascia/io/file.h>
+#include <fascia/io/rig_file.h>
 #include <fascia/io/texture.h>
 
 namespace fascia {
@@ -70,6 +71,7 @@ CharacterFile readCharacterFile(const std::string& path) {
   out.def.folder = folderOf(path);
   try {
     loadTexture(out.def);
+    if (out.def.rig) out.def.rig->model = loadRig(out.def);
   } catch (const Error& error) {
     throw Error(out.lines.locate(error.issues()));
   }

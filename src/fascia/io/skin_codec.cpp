@@ -72,7 +72,13 @@ CodecPtr<SkinMaterialDef> materialCodec() {
 
 CodecPtr<SkinFatDef> fatCodec() {
   auto codec = std::make_shared<ObjectCodec<SkinFatDef>>("Between flesh and skin.");
-  codec->field("thickness_m", &SkinFatDef::thickness_m, numbers({0, 1}), "Its thickness");
+  codec
+      ->field("thickness_m", &SkinFatDef::thickness_m, numbers({0, 1}),
+              "Its thickness; on a rig at most, and never more than lies between mesh and flesh")
+      .field("compressible", &SkinFatDef::compressible, numbers({0, 0.95}),
+             "Share of the thickness that pressing can take away")
+      .field("bulk_Pa", &SkinFatDef::bulk_Pa, numbers({0, 1e5}),
+             "Resistance of each solid's fat to a change of its volume");
   return codec;
 }
 
@@ -163,6 +169,23 @@ CodecPtr<SkinAnchorDef> anchorCodec() {
   return codec;
 }
 
+CodecPtr<SkinContactDef> contactCodec() {
+  using C = SkinContactDef;
+  auto codec = std::make_shared<ObjectCodec<C>>("The skin against itself.");
+  codec->field("self", &C::self, booleans(), "Whether sheets of skin keep out of each other")
+      .field("gap_m", &C::gap_m, numbers(positive(1)), "Kept between two of them");
+  return codec;
+}
+
+CodecPtr<SkinPartDef> partCodec() {
+  using P = SkinPartDef;
+  using Object = ObjectCodec<P>;
+  auto codec = std::make_shared<Object>("What becomes of a piece of the rig's mesh.");
+  codec->field("name", &P::name, names(), "Of the mesh or of its material", Object::Need::required)
+      .field("rigid", &P::rigid, booleans(), "Carried by its joints as it is, or elastic skin");
+  return codec;
+}
+
 class SkinCodec final : public ObjectCodec<SkinDef> {
  public:
   SkinCodec() : ObjectCodec("The elastic skin: the rig's mesh, or a tube between two joints.") {
@@ -182,7 +205,12 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
     field("brushes", &S::brushes, listOf(brushCodec(), kMaxListed), "Dabs, in order");
     field("anchors", &S::anchors, listOf(anchorCodec(), kMaxListed), "Strands moved by hand");
     field("points", &S::points, optionally(skinPointsCodec()),
-          "Values per point, row by row from the bottom, in place of the above");
+          "Values per point, row by row from the bottom, in place of the above; on a rig one row "
+          "in the order of its points");
+    field("contact", &S::contact, contactCodec(), "");
+    field("parts", &S::parts, listOf(partCodec(), kMaxListed),
+          "Pieces of the rig's mesh; without a rule those with flesh beneath are elastic, others "
+          "(eyes, teeth) rigid");
   }
 
   Json write(const SkinDef& skin) const override {

@@ -217,7 +217,7 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
   }
 
   Json schema() const override {
-    Json side = integers(1, kMaxGridSide)->schema();
+    Json side = integers(1, kMaxGridPoints)->schema();  // a mesh has one long row
     Json properties;
     properties.set("columns", side);
     properties.set("rows", side);
@@ -247,14 +247,14 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
     Json out;
     out.set("type", "array");
     out.set("description", help);
-    out.set("maxItems", kMaxGridSide);
+    out.set("maxItems", kMaxGridPoints);
     out.set("items", std::move(item));
     return out;
   }
 
   static bool readGrid(const Json& json, const JsonPath& path, Reading& reading,
                        SkinPointsDef& value) {
-    const CodecPtr<int> side = integers(1, kMaxGridSide);
+    const CodecPtr<int> side = integers(1, kMaxGridPoints);
     for (const auto& [name, target] :
          {std::pair{"columns", &value.columns}, std::pair{"rows", &value.rows}}) {
       const Json* found = json.find(name);
