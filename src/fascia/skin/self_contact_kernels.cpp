@@ -166,22 +166,28 @@ HWY_INLINE void forEachLane(Mask mask, std::uint32_t allowed, const Visit& visit
     visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-// Calls visit(t) for the triangles of a group that the block's points can reach.
+// Calls visit(t) for the triangles of a group that the block's points can reach and face.
 template <class Visit>
 HWY_INLINE void forEachTriangle(const SelfContactModel& m, std::size_t group, const SurfaceFrame& f,
                                 const PairReach& reach, const Visit& visit) {
   const D d;
   const SelfContactModel::Group g = m.groups[group];
-  const V3 low = all(reach.low), high = all(reach.high);
+  const V3 low = all(reach.low), high = all(reach.high), axis = all(reach.axis);
   const auto meets = [](V lowest, V highest, V center, V radius) HWY_ATTR {
     return hn::And(hn::Le(hn::Sub(center, radius), highest),
                    hn::Ge(hn::Add(center, radius), lowest));
   };
   for (std::size_t t = g.first; t < g.first + g.count; t += hn::Lanes(d)) {
-    const V3 c = pointers(f.center).at(static_cast<std::ptrdiff_t>(t));
-    const V r = hn::LoadU(d, f.radius.data() + t);
-    const Mask mask = hn::And(meets(low.x, high.x, c.x, r),
-                              hn::And(meets(low.y, high.y, c.y, r), meets(low.z, high.z, c.z, r)));
+    const auto at = static_cast<std::ptrdiff_t>(t);
+    const V3 c = pointers(f.center).at(at);
+    const V behind = hn::Mul(hn::Set(d, reach.depthScale), hn::LoadU(d, m.depth_m.data() + t));
+    const V r =
+        hn::Add(hn::LoadU(d, f.radius.data() + t), hn::Max(hn::Set(d, reach.ahead_m), behind));
+    const V toAxis =
+        hn::Mul(dot(pointers(f.areaNormal).at(at), axis), hn::LoadU(d, f.inverseLength.data() + t));
+    const Mask mask = hn::And(
+        hn::And(meets(low.x, high.x, c.x, r), meets(low.y, high.y, c.y, r)),
+        hn::And(meets(low.z, high.z, c.z, r), hn::Le(toAxis, hn::Set(d, reach.cosineNever))));
     forEachLane(mask, ~0u, [&](std::size_t i) HWY_ATTR { visit(t + i); });
   }
 }
@@ -231,32 +237,27 @@ struct TriangleTest {
   }
 };
 
-void boundNearestImpl(const SelfContactModel& m, std::size_t group, const SurfaceFrame& f,
-                      const PairReach& reach, PointLanes& lanes) {
-  const D d;
-  forEachTriangle(m, group, f, reach, [&](std::size_t t) HWY_ATTR {
-    const TriangleTest triangle(m, f, t, reach);
-    for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d)) {
-      const TriangleTest::Points points = triangle.test(lanes, l);
-      forEachLane(points.surely, reach.lanes >> l, [&](std::size_t i) HWY_ATTR {
-        float& nearest = lanes.nearest_m[l + i];
-        nearest = std::min(nearest, std::sqrt(hn::ExtractLane(points.square, i)));
-      });
-    }
-  });
-}
-
 std::size_t candidatesImpl(const SelfContactModel& m, std::size_t group, const SurfaceFrame& f,
-                           const PairReach& reach, const PointLanes& lanes,
+                           const PairReach& reach, bool lower, PointLanes& lanes,
                            std::array<Candidate, kMostCandidates>& out) {
   const D d;
   std::size_t count = 0;
   forEachTriangle(m, group, f, reach, [&](std::size_t t) HWY_ATTR {
     const TriangleTest triangle(m, f, t, reach);
-    for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d))
-      forEachLane(triangle.test(lanes, l).near, reach.lanes >> l, [&](std::size_t i) {
-        out[count++] = {static_cast<std::uint32_t>(l + i), static_cast<std::uint32_t>(t)};
+    for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d)) {
+      const TriangleTest::Points points = triangle.test(lanes, l);
+      if (hn::AllFalse(d, points.near)) continue;
+      PointLanes::Lanes<float> distance;
+      hn::StoreU(hn::Sqrt(points.square), d, distance.data());
+      forEachLane(points.near, reach.lanes >> l, [&](std::size_t i) {
+        out[count++] = {static_cast<std::uint32_t>(l + i), static_cast<std::uint32_t>(t),
+                        distance[i] - f.radius[t]};
       });
+      if (!lower) continue;
+      forEachLane(points.surely, reach.lanes >> l, [&](std::size_t i) {
+        lanes.nearest_m[l + i] = std::min(lanes.nearest_m[l + i], distance[i]);
+      });
+    }
   });
   return count;
 }
@@ -271,7 +272,6 @@ namespace fascia {
 HWY_EXPORT(updateGroupImpl);
 HWY_EXPORT(updateNormalsImpl);
 HWY_EXPORT(boundsOfLanesImpl);
-HWY_EXPORT(boundNearestImpl);
 HWY_EXPORT(candidatesImpl);
 
 SurfaceFrame::SurfaceFrame(const SelfContactModel& model)
@@ -315,15 +315,10 @@ MotionBounds loadLanes(const PointBlock& block, const VectorArray& position,
   return HWY_DYNAMIC_DISPATCH(boundsOfLanesImpl)(lanes);
 }
 
-void boundNearest(const SelfContactModel& model, std::size_t group, const SurfaceFrame& frame,
-                  const PairReach& reach, PointLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(boundNearestImpl)(model, group, frame, reach, lanes);
-}
-
 std::size_t findCandidates(const SelfContactModel& model, std::size_t group,
-                           const SurfaceFrame& frame, const PairReach& reach,
-                           const PointLanes& lanes, std::array<Candidate, kMostCandidates>& out) {
-  return HWY_DYNAMIC_DISPATCH(candidatesImpl)(model, group, frame, reach, lanes, out);
+                           const SurfaceFrame& frame, const PairReach& reach, bool lower,
+                           PointLanes& lanes, std::array<Candidate, kMostCandidates>& out) {
+  return HWY_DYNAMIC_DISPATCH(candidatesImpl)(model, group, frame, reach, lower, lanes, out);
 }
 
 }  // namespace fascia

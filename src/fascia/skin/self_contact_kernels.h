@@ -51,7 +51,9 @@ struct PointLanes {
 
 // How a block and a group of triangles can meet until the end of the interval.
 struct PairReach {
-  float low[3], high[3];  // box that triangles must touch
+  float low[3], high[3];  // box of the points on their way, seen from the group
+  float axis[3];          // of the points' normals: triangles that look …
+  float cosineNever;      // … closer to it than this face none of them
   float ahead_m;          // how far in front of a triangle a point may be, …
   float interval_s;       // … and how long they may approach each other
   float depthScale;       // times depth_m: how far behind
@@ -60,6 +62,7 @@ struct PairReach {
 
 struct Candidate {
   std::uint32_t lane, triangle;
+  float least_m;  // the triangle is no nearer than this
 };
 inline constexpr std::size_t kMostCandidates =
     PointBlock::kCapacity * SelfContactModel::Group::kCapacity;
@@ -82,14 +85,10 @@ void updateNormals(const SelfContactModel& model, std::size_t chunk, SurfaceFram
 MotionBounds loadLanes(const PointBlock& block, const VectorArray& position,
                        const VectorArray& velocity, const SurfaceFrame& frame, PointLanes& lanes);
 
-// Lowers nearest_m of the points to what a look at the triangles' centres tells for certain.
-void boundNearest(const SelfContactModel& model, std::size_t group, const SurfaceFrame& frame,
-                  const PairReach& reach, PointLanes& lanes);
-
 // Points and triangles that may touch and are not too far for nearest_m, triangle by triangle;
-// returns how many.
+// returns how many. With `lower`, lowers nearest_m to what distances to centres tell for certain.
 std::size_t findCandidates(const SelfContactModel& model, std::size_t group,
-                           const SurfaceFrame& frame, const PairReach& reach,
-                           const PointLanes& lanes, std::array<Candidate, kMostCandidates>& out);
+                           const SurfaceFrame& frame, const PairReach& reach, bool lower,
+                           PointLanes& lanes, std::array<Candidate, kMostCandidates>& out);
 
 }  // namespace fascia

@@ -35,18 +35,22 @@ void forEachInTasks(std::size_t count, std::size_t perTask, const Task& task) {
   });
 }
 
-// Whether any two directions of the cones are nearer to each other than acos(kMayFace): the sum of
-// the half angles and of the axes' angle stays below.
-bool neverFace(const NormalCone& a, const NormalCone& b) {
-  if (a.cosine <= 0 || b.cosine <= 0) return false;
-  const auto sine = [](float c) { return std::sqrt(std::max(0.f, 1 - c * c)); };
-  const float sineA = sine(a.cosine), sineB = sine(b.cosine);
-  const float cosineSum = a.cosine * b.cosine - sineA * sineB;
-  if (cosineSum <= kMayFace) return false;
-  const float sineSum = sineA * b.cosine + a.cosine * sineB;
-  const float cosineRest = kMayFace * cosineSum + sine(kMayFace) * sineSum;
-  const float between = a.axis[0] * b.axis[0] + a.axis[1] * b.axis[1] + a.axis[2] * b.axis[2];
-  return between > cosineRest;
+float sine(float cosine) {
+  return std::sqrt(std::max(0.f, 1 - cosine * cosine));
+}
+
+// Cosine of the angle to a cone's axis below which a direction is nearer than acos(kMayFace) to all
+// of the cone; 2 if there is none.
+float cosineNever(const NormalCone& cone) {
+  if (cone.cosine <= kMayFace) return 2;
+  return kMayFace * cone.cosine + sine(kMayFace) * sine(cone.cosine);
+}
+
+// Whether every direction of a cone is nearer to the axis than `cosine`.
+bool within(const NormalCone& cone, const float* axis, float cosine) {
+  if (cosine > 1 || cone.cosine <= cosine) return false;
+  const float between = axis[0] * cone.axis[0] + axis[1] * cone.axis[1] + axis[2] * cone.axis[2];
+  return between > cosine * cone.cosine + sine(cosine) * sine(cone.cosine);
 }
 
 // The box over the whole interval, seen from the mean motion.
@@ -117,10 +121,11 @@ void SurfaceSearch::search(std::size_t block, const Query& query, const Visit& v
     PairReach reach;
     if (!meet(points, group, query, reach)) return;
     reach.lanes = ~lanesLeftAlone(*model_, block, group) & lanesBelow(b.count);
-    if (query.nearestOnly) boundNearest(*model_, group, frame_, reach, lanes);
-    const std::size_t count = findCandidates(*model_, group, frame_, reach, lanes, candidates);
+    const std::size_t count =
+        findCandidates(*model_, group, frame_, reach, query.nearestOnly, lanes, candidates);
     for (std::size_t c = 0; c < count; ++c) {
-      const auto [lane, triangle] = candidates[c];
+      const auto [lane, triangle, least_m] = candidates[c];
+      if (least_m > lanes.nearest_m[lane]) continue;
       Touch touch;
       touch.point = static_cast<std::uint32_t>(b.first) + lane;
       touch.triangle = triangle, touch.group = group;
@@ -134,15 +139,16 @@ void SurfaceSearch::search(std::size_t block, const Query& query, const Visit& v
 bool SurfaceSearch::meet(const MotionBounds& points, std::uint32_t group, const Query& query,
                          PairReach& out) const {
   const MotionBounds& other = groups_[group];
-  if (neverFace(points.normals, other.normals)) return false;
+  std::copy_n(points.normals.axis, 3, out.axis);
+  out.cosineNever = cosineNever(points.normals);
+  if (within(other.normals, out.axis, out.cosineNever)) return false;
   const float range = std::max(query.ahead_m, query.depthScale * model_->groups[group].deepest_m);
   for (int a = 0; a < 3; ++a) {
-    // Seen from the group the points go by between `least` and `most`.
-    const float least = std::min(0.f, (points.slowest[a] - other.fastest[a]) * interval_s_);
-    const float most = std::max(0.f, (points.fastest[a] - other.slowest[a]) * interval_s_);
-    out.low[a] = points.low[a] + least - range;
-    out.high[a] = points.high[a] + most + range;
-    if (out.low[a] > other.high[a] || out.high[a] < other.low[a]) return false;
+    out.low[a] =
+        points.low[a] + std::min(0.f, (points.slowest[a] - other.fastest[a]) * interval_s_);
+    out.high[a] =
+        points.high[a] + std::max(0.f, (points.fastest[a] - other.slowest[a]) * interval_s_);
+    if (out.low[a] - range > other.high[a] || out.high[a] + range < other.low[a]) return false;
   }
   out.ahead_m = query.ahead_m;
   out.interval_s = interval_s_;
