@@ -6,13 +6,14 @@
 namespace fascia {
 
 void addBench(CLI::App& program, Console& console) {
-  CLI::App& group = *program.add_subcommand("bench", "Measure speed, beside others'");
+  CLI::App& group = *program.add_subcommand("bench", "Measure speed and quality, beside others'");
   group.require_subcommand(1);
   group.footer(
       "Examples:\n  fascia bench paper\n  fascia bench scaling --points 10000\n  fascia bench "
       "paper --seconds 1 --json");
   addPaperBench(group, console);
   addScalingBench(group, console);
+  addDeformationBench(group, console);
 #ifdef FASCIA_WITH_BULLET
   addPeersBench(group, console);
 #endif

@@ -33,13 +33,16 @@ TEST(Crossings, AreNotTouchingNeighbouringOrCoplanarTriangles) {
       << "a tip on a face";
   EXPECT_EQ(crossingTrianglePairs(Triangles{{0, 1, 2}, {0, 1, 4}}, points), 0u) << "a shared edge";
   EXPECT_EQ(crossingTrianglePairs(Triangles{{0, 1, 2}, {6, 7, 8}}, points), 0u) << "one plane";
+  const Points fold = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5f, 0.5f, -1}, {0.6f, 0.5f, 1}};
+  EXPECT_EQ(crossingTrianglePairs(Triangles{{0, 1, 2}, {0, 3, 4}}, fold), 0u) << "a shared point";
 }
 
 TEST(Crossings, OfPlanesWhoseTrianglesAreApartAreNotCounted) {
   // Each has corners on both sides of the other's plane, but they lie side by side.
-  const Points points = {{0, 0, 0},     {1, 0, 0},    {0, 1, 0},
-                         {5, 0.2f, -1}, {5, 0.2f, 1}, {0.9f, 0.9f, 0.5f}};
-  EXPECT_EQ(crossingTrianglePairs(Triangles{{0, 1, 2}, {3, 4, 5}}, points), 0u);
+  const Points points = {{0, 0, 0},         {2, 0, 0},        {0, 2, 0},
+                         {-0.2f, 0.5f, -1}, {-0.2f, 0.6f, 1}, {-5, 0.5f, 1}};
+  for (const auto& first : Triangles{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}})
+    EXPECT_EQ(crossingTrianglePairs(Triangles{first, {3, 4, 5}}, points), 0u) << first[0];
 }
 
 // Each facet of a tube of one ring is two triangles, and a plane across the tube cuts them all.

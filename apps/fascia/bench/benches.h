@@ -11,6 +11,7 @@ class Console;
 // One file per benchmark. Each adds one subcommand to `fascia bench`, and is called in bench.cpp.
 void addPaperBench(CLI::App& group, Console& console);
 void addScalingBench(CLI::App& group, Console& console);
+void addDeformationBench(CLI::App& group, Console& console);
 void addPeersBench(CLI::App& group, Console& console);  // only where Bullet was found
 
 }  // namespace fascia
