@@ -29,6 +29,8 @@ struct Fold {
   // |n1||n2| times cosine and sine of θ, positive where the sheet bends away from its normals.
   double cosine() const { return normal1.dot(normal2); }
   double sine() const { return -edge.norm() * normal1.dot(toSecond); }
+  double heightSquared1() const { return normal1.squaredNorm() / edge.squaredNorm(); }
+  double heightSquared2() const { return normal2.squaredNorm() / edge.squaredNorm(); }
   double angleFrom(const Hinge& h) const {
     return std::atan2(sine() * h.restCosine - cosine() * h.restSine,
                       cosine() * h.restCosine + sine() * h.restSine);
@@ -76,8 +78,8 @@ Hinge makeHinge(const Side& a, const Side& b, const VectorArray& rest, const Flo
   h.stiffness = static_cast<float>(mean * fold.edge.squaredNorm() / areas);
   h.restCosine = static_cast<float>(std::cos(angle));
   h.restSine = static_cast<float>(std::sin(angle));
-  h.floor1 = static_cast<float>(kFloor * fold.normal1.squaredNorm());
-  h.floor2 = static_cast<float>(kFloor * fold.normal2.squaredNorm());
+  h.floor1 = static_cast<float>(kFloor * fold.heightSquared1());
+  h.floor2 = static_cast<float>(kFloor * fold.heightSquared2());
   h.floorEdge = static_cast<float>(kFloor * fold.edge.squaredNorm());
   return h;
 }
@@ -110,8 +112,8 @@ double hingeEnergy(const Hinge& h, const VectorArray& r) {
 void addHingeJacobian(const Hinge& h, const VectorArray& r,
                       std::vector<Eigen::Triplet<double>>& entries) {
   const Fold fold(h, r);
-  if (fold.normal1.squaredNorm() < h.floor1 || fold.normal2.squaredNorm() < h.floor2 ||
-      fold.edge.squaredNorm() < h.floorEdge)
+  if (!(fold.heightSquared1() > h.floor1 && fold.heightSquared2() > h.floor2 &&
+        fold.edge.squaredNorm() > h.floorEdge))
     return;  // the force fades
   const std::array<Vec3, 4> gradient = fold.gradient();
   for (std::size_t i = 0; i < 4; ++i) {
@@ -125,14 +127,17 @@ void addHingeJacobian(const Hinge& h, const VectorArray& r,
   }
 }
 
-std::array<double, 4> hingeStiffness(const Hinge& h, const VectorArray& rest) {
+std::array<Mat3, 4> hingeStiffness(const Hinge& h, const VectorArray& rest) {
   const std::array<Vec3, 4> gradient = Fold(h, rest).gradient();
   double sum = 0;
   for (const Vec3& g : gradient) sum += g.norm();
-  std::array<double, 4> stiffness{};
-  // Heights down to kSqueezed of the rest shape's.
-  for (std::size_t i = 0; i < 4; ++i)
-    stiffness[i] = h.stiffness * gradient[i].norm() * sum / (Hinge::kSqueezed * Hinge::kSqueezed);
+  std::array<Mat3, 4> stiffness;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3& g = gradient[i];
+    // Heights go down to kSqueezed of the rest shape's.
+    const double scale = h.stiffness * sum / (Hinge::kSqueezed * Hinge::kSqueezed);
+    stiffness[i] = scale / std::max(g.norm(), 1e-30) * g * g.transpose();
+  }
   return stiffness;
 }
 

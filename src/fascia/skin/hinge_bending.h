@@ -8,6 +8,7 @@
 #include <Eigen/SparseCore>
 
 #include <fascia/base/aligned.h>
+#include <fascia/math/types.h>
 
 namespace fascia {
 
@@ -16,15 +17,16 @@ namespace fascia {
 //   ε = ½ k δ²,  k = κ |e|²/(A1 + A2),  δ: the dihedral angle θ less the rest shape's.
 //
 // With this k a bent sheet of regular triangles has the energy ½κ (1/R)² per area (Seung & Nelson
-// 1988). The force is −∂ε/∂r until a triangle is squeezed to less than kSqueezed of its rest area
-// or the edge of its length; from there on it fades, because ∂θ/∂r grows with one over the height.
+// 1988). The force is −∂ε/∂r until the edge or one of the triangles' heights over it is shorter
+// than kSqueezed of its rest length; from there on it fades, because ∂θ/∂r grows with one over the
+// height.
 struct Hinge {
   // The edge's ends p0 and p1, and the corners opposite of it: triangles p0 p1 p2 and p1 p0 p3.
   std::array<std::uint32_t, 4> corners;
   float stiffness;             // k, Nm
   float restCosine, restSine;  // of θ
-  float floor1, floor2;        // kSqueezed² of the rest |n1|², |n2|² (m⁴), n twice the area
-  float floorEdge;             // kSqueezed² of the rest |e|², m²
+  float floor1, floor2;        // kSqueezed² of the squared rest heights over the edge, m²
+  float floorEdge;             // kSqueezed² of the edge's squared rest length, m²
 
   static constexpr double kSqueezed = 0.7;
 };
@@ -38,7 +40,8 @@ double hingeEnergy(const Hinge& hinge, const VectorArray& position);  // joule
 // Adds −k ∂θ/∂r ∂θ/∂rᵀ, the negative semi-definite part of ∂f/∂r.
 void addHingeJacobian(const Hinge& hinge, const VectorArray& position,
                       std::vector<Eigen::Triplet<double>>& entries);
-// K with k ∂θ/∂r ∂θ/∂rᵀ ≼ diag(K) in postures that are not squeezed, per corner, N/m.
-std::array<double, 4> hingeStiffness(const Hinge& hinge, const VectorArray& rest);
+// Blocks K, one per corner, with k ∂θ/∂r ∂θ/∂rᵀ ≼ diag(K) for the rest shape's angles between edges
+// and heights down to kSqueezed of the rest shape's, N/m.
+std::array<Mat3, 4> hingeStiffness(const Hinge& hinge, const VectorArray& rest);
 
 }  // namespace fascia

@@ -49,9 +49,9 @@ HWY_INLINE void triangleForces(const std::uint32_t* corners, const float* coeffi
   }
 }
 
-// A batch of hinges' forces on their corners, the gradient as in hinge_bending.cpp. Each division
-// by a square that may vanish has a floor; the force fades by the same factor on both sides, so
-// that it never has a torque.
+// A batch of hinges' forces on their corners, the gradient as in hinge_bending.cpp. The moment
+// fades where a height or the edge is below its floor, by the same factor on both sides: it never
+// turns the hinge as a whole.
 HWY_INLINE void hingeForces(const std::uint32_t* corners, const float* coefficients,
                             const float* quads, float* out) {
   const D d;
@@ -66,21 +66,24 @@ HWY_INLINE void hingeForces(const std::uint32_t* corners, const float* coefficie
     const V3 to1 = loadQuads(quads, corners + 2 * kBatch + l) - p0;
     const V3 to2 = loadQuads(quads, corners + 3 * kBatch + l) - p0;
     const V3 n1 = cross(e, to1), n2 = cross(to2, e);
-    const V square1 = dot(n1, n1), square2 = dot(n2, n2), squareE = dot(e, e);
-    const V inverse1 = inverse(square1, coefficient(3));
-    const V inverse2 = inverse(square2, coefficient(4));
-    const V inverseE = inverse(squareE, coefficient(5));
-    const V length = hn::Sqrt(squareE);
-    const V cosine = dot(n1, n2), sine = hn::Neg(hn::Mul(length, dot(n1, to2)));
+    const V squareE = dot(e, e);
+    const V perSquareE = inverse(squareE, hn::Set(d, 1e-30f)), perLength = hn::Sqrt(perSquareE);
+    const V height1 = hn::Mul(dot(n1, n1), perSquareE);  // squared
+    const V height2 = hn::Mul(dot(n2, n2), perSquareE);
+    const V inverse1 = inverse(height1, coefficient(3));
+    const V inverse2 = inverse(height2, coefficient(4));
+    const V fadeE = hn::Mul(squareE, inverse(squareE, coefficient(5)));
+    const V fade1 = hn::Mul(height1, inverse1), fade2 = hn::Mul(height2, inverse2);
+
+    const V cosine = dot(n1, n2);
+    const V sine = hn::Neg(hn::Mul(hn::Mul(squareE, perLength), dot(n1, to2)));
     const V restCosine = coefficient(1), restSine = coefficient(2);
     const V angle = atan2(d, hn::MulSub(sine, restCosine, hn::Mul(cosine, restSine)),
                           hn::MulAdd(cosine, restCosine, hn::Mul(sine, restSine)));
-    const V fade = hn::Mul(hn::Mul(hn::Mul(square1, inverse1), hn::Mul(square2, inverse2)),
-                           hn::Mul(squareE, inverseE));
-    const V moment = hn::Mul(hn::Mul(coefficient(0), angle), hn::Mul(fade, length));
-    const V3 f2 = scaled(hn::Mul(moment, inverse1), n1);
-    const V3 f3 = scaled(hn::Mul(moment, inverse2), n2);
-    const V share1 = hn::Mul(dot(to1, e), inverseE), share2 = hn::Mul(dot(to2, e), inverseE);
+    const V moment = hn::Mul(hn::Mul(coefficient(0), angle), hn::Mul(fadeE, perLength));
+    const V3 f2 = scaled(hn::Mul(moment, hn::Mul(inverse1, fade2)), n1);
+    const V3 f3 = scaled(hn::Mul(moment, hn::Mul(inverse2, fade1)), n2);
+    const V share1 = hn::Mul(dot(to1, e), perSquareE), share2 = hn::Mul(dot(to2, e), perSquareE);
     const V3 pull1 = mulAdd(share1, f2, scaled(share2, f3));
     storeQuads(pull1 - (f2 + f3), out + l * MeshLayout::kQuad);
     storeQuads(scaled(minus, pull1), out + (kBatch + l) * MeshLayout::kQuad);

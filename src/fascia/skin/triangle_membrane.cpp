@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 namespace fascia {
 namespace {
 
@@ -48,53 +50,26 @@ struct Stretch {
   double shear() const { return u.dot(v); }
 };
 
-// The material's direction u in the triangle's plane.
-Vec3 directionInPlane(const Vec3& wanted, const Vec3& normal, const Vec3& edge) {
-  const Vec3 u = wanted - wanted.dot(normal) * normal;
-  return u.norm() > 1e-3 * wanted.norm() ? u.normalized() : edge.normalized();
-}
-
-// Spectral norm of a 2x2 matrix.
-double norm(const Eigen::Matrix2d& m) {
-  const double squares = m.squaredNorm(), area = m.determinant();
-  return std::sqrt(0.5 * (squares + std::sqrt(std::max(0.0, squares * squares - 4 * area * area))));
-}
-
-// Row sums of the norms of the 3x3 blocks of a triangle's −∂f/∂r where both directions are
-// stretched to the plateau, `cosine` between them: block Gershgorin, J ≼ diag(sums).
-std::array<double, 3> rowSums(const Triangle& t, double cap, double cosine) {
+// Row sums (Gershgorin) of −∂f/∂r per corner of a triangle with both directions stretched to the
+// plateau and at right angles, where shear is elastic too: −∂f/∂r ≼ diag(sums), along x_u, along
+// x_v and normal to both.
+std::array<Vec3, 3> rowSums(const Triangle& t, double cap) {
   const Gradients g(t);
-  const double stretch = std::sqrt(1 + cap), shear = (1 + cap) * cosine;
-  const Eigen::Vector2d xu(stretch, 0);
-  const Eigen::Vector2d xv(stretch * cosine, stretch * std::sqrt(1 - cosine * cosine));
-  const double shearStress = t.shear * plateauStress(shear, cap);
-  const double shearStiffness = std::abs(shear) <= cap ? t.shear : 0;
-  std::array<double, 3> sums{};
+  const double square = 1 + cap;  // |x_u|² = |x_v|²
+  std::array<Vec3, 3> sums;
   for (int i = 0; i < 3; ++i) {
+    Vec3& row = sums[static_cast<std::size_t>(i)] = Vec3::Zero();
     for (int j = 0; j < 3; ++j) {
       const double uu = t.stretch_u * g.u[i] * g.u[j], vv = t.stretch_v * g.v[i] * g.v[j];
-      const double across =
-          0.5 * cap * (uu + vv) + shearStress * (g.u[i] * g.v[j] + g.v[i] * g.u[j]);
-      const Eigen::Matrix2d inPlane =
-          across * Eigen::Matrix2d::Identity() + uu * xu * xu.transpose() +
-          vv * xv * xv.transpose() +
-          shearStiffness * (g.u[i] * xv + g.v[i] * xu) * (g.u[j] * xv + g.v[j] * xu).transpose();
-      sums[static_cast<std::size_t>(i)] += std::max(norm(inPlane), std::abs(across));
+      const double across = 0.5 * cap * (uu + vv), shear = square * t.shear;
+      row.x() += std::abs(across + square * uu + shear * g.v[i] * g.v[j]) +
+                 std::abs(shear * g.v[i] * g.u[j]);
+      row.y() += std::abs(across + square * vv + shear * g.u[i] * g.u[j]) +
+                 std::abs(shear * g.u[i] * g.v[j]);
+      row.z() += std::abs(across);
     }
   }
   return sums;
-}
-
-// The largest row sums over all angles between x_u and x_v. They are at both ends of the range
-// where shear is elastic, or where the directions fall onto each other.
-std::array<double, 3> stiffnessOf(const Triangle& t, double cap) {
-  const double plateau = cap / (1 + cap) * (1 - 1e-9);
-  std::array<double, 3> largest{};
-  for (const double cosine : {0.0, plateau, -plateau, 1.0, -1.0}) {
-    const std::array<double, 3> sums = rowSums(t, cap, cosine);
-    for (std::size_t i = 0; i < 3; ++i) largest[i] = std::max(largest[i], sums[i]);
-  }
-  return largest;
 }
 
 // A rest triangle's edges from corner 0, and how much of it there is.
@@ -116,11 +91,22 @@ struct RestShape {
   bool isDegenerate() const { return !(flatness > kFlattest) || longest < kShortest_m2; }
 };
 
-Triangle makeTriangle(const TriangleMembrane::Corners& c, const RestShape& shape,
-                      const Vec3& wanted, const TriangleMaterial& m) {
-  const auto mean = [&](const FloatArray& a) { return (a[c[0]] + a[c[1]] + a[c[2]]) / 3.0; };
+// The material's directions u and v in the triangle's plane, and its normal.
+Mat3 materialAxes(const RestShape& shape, const Vec3& wanted) {
   const Vec3 normal = shape.cross.normalized();
-  const Vec3 u = directionInPlane(wanted, normal, shape.e1), v = normal.cross(u);
+  const Vec3 inPlane = wanted - wanted.dot(normal) * normal;
+  const bool usable = inPlane.norm() > 1e-3 * wanted.norm();
+  Mat3 axes;
+  axes.col(0) = usable ? inPlane.normalized() : shape.e1.normalized();
+  axes.col(1) = normal.cross(axes.col(0));
+  axes.col(2) = normal;
+  return axes;
+}
+
+Triangle makeTriangle(const TriangleMembrane::Corners& c, const RestShape& shape, const Mat3& axes,
+                      const TriangleMaterial& m) {
+  const auto mean = [&](const FloatArray& a) { return (a[c[0]] + a[c[1]] + a[c[2]]) / 3.0; };
+  const Vec3 u = axes.col(0), v = axes.col(1);
   // Inverse of the relaxed edges' matrix (e1 e2)/prestretch in the axes u and v.
   const double inverse = mean(m.prestretch) / shape.cross.norm();
   Triangle t{};
@@ -144,27 +130,29 @@ TriangleMembrane::TriangleMembrane(std::span<const Corners> triangles, const Vec
     : bound_(rest.size(), 0.f), areas_(rest.size(), 0.f), cap_(m.max_stretch * m.max_stretch - 1) {
   triangles_.reserve(triangles.size());
   std::vector<Corners> kept;
-  std::vector<double> bound(rest.size(), 0.0), areas(rest.size(), 0.0);
+  std::vector<Mat3> stiffness(rest.size(), Mat3::Zero());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const RestShape shape(triangles[i], rest);
+    const Corners& corners = triangles[i];
+    const RestShape shape(corners, rest);
     if (shape.isDegenerate()) continue;
-    const Vec3 wanted = m.u.empty() ? shape.e1 : m.u[i].cast<double>();
-    kept.push_back(triangles[i]);
-    triangles_.push_back(makeTriangle(triangles[i], shape, wanted, m));
-    const std::array<double, 3> stiffness = stiffnessOf(triangles_.back(), cap_);
+    const Mat3 axes = materialAxes(shape, m.u.empty() ? shape.e1 : Vec3(m.u[i].cast<double>()));
+    kept.push_back(corners);
+    triangles_.push_back(makeTriangle(corners, shape, axes, m));
+    const std::array<Vec3, 3> sums = rowSums(triangles_.back(), cap_);
     for (std::size_t k = 0; k < 3; ++k) {
-      areas[triangles[i][k]] += shape.area() / 3;
-      bound[triangles[i][k]] += stiffness[k];
+      areas_[corners[k]] += static_cast<float>(shape.area() / 3);
+      stiffness[corners[k]] += axes * sums[k].asDiagonal() * axes.transpose();
     }
   }
   hinges_ = makeHinges(kept, rest, m.bending);
   for (const Hinge& hinge : hinges_) {
-    const std::array<double, 4> stiffness = hingeStiffness(hinge, rest);
-    for (std::size_t k = 0; k < 4; ++k) bound[hinge.corners[k]] += stiffness[k];
+    const std::array<Mat3, 4> bending = hingeStiffness(hinge, rest);
+    for (std::size_t k = 0; k < 4; ++k) stiffness[hinge.corners[k]] += bending[k];
   }
-  const auto toFloat = [](double x) { return static_cast<float>(x); };
-  std::transform(bound.begin(), bound.end(), bound_.begin(), toFloat);
-  std::transform(areas.begin(), areas.end(), areas_.begin(), toFloat);
+  std::transform(stiffness.begin(), stiffness.end(), bound_.begin(), [](const Mat3& at) {
+    return static_cast<float>(
+        Eigen::SelfAdjointEigenSolver<Mat3>(at, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
+  });
 }
 
 double TriangleMembrane::energy(const VectorArray& r) const {

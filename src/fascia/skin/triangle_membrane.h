@@ -48,8 +48,10 @@ class TriangleMembrane {
   // column 3k+c for storage index k.
   void addForceJacobian(const VectorArray& position, bool definite,
                         std::vector<Eigen::Triplet<double>>& entries) const;
-  // K with −∂f/∂r ≼ diag(K) for every posture within max_stretch, N/m: what explicit steps must
-  // resolve. Of bending only the positive part counts, see hingeStiffness.
+  // A bound of −∂f/∂r ≼ diag(K) for postures whose x_u and x_v are no longer than max_stretch, N/m:
+  // what explicit steps must resolve. Largest over the directions in which the point can move, the
+  // triangles around it turned with each other as in the rest shape. At rest the true stiffness is
+  // about a third of it, most of which is the stretch to the plateau.
   const FloatArray& stiffnessBound() const { return bound_; }
   double maxStretch(const VectorArray& position) const;    // edge length over rest length
   const FloatArray& pointAreas() const { return areas_; }  // rest area of each point, m²
