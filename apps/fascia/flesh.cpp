@@ -124,6 +124,7 @@ Json reportJson(const RiggedModel& model, const FleshFit& fit) {
     joints.push_back(std::move(entry));
   }
   for (const std::string& note : model.notes) notes.emplace_back(note);
+  for (const std::string& note : fit.notes) notes.emplace_back(note);
   return Json::Object{{"coverage", fit.coverage},
                       {"residual_rms_m", fit.residual_rms_m},
                       {"deepest_outside_m", fit.deepest_outside_m},
@@ -140,7 +141,9 @@ void flesh(const FleshOptions& options, const Console& console) {
   const RiggedModel model = readRiggedModel(options.input, {options.scale});
   FleshFit fit = fitFlesh(model, options.fit);
   sayTable(fit, console);
-  for (const std::string& note : model.notes) console.say("note: " + note);
+  for (const auto* notes : {&model.notes, &fit.notes}) {
+    for (const std::string& note : *notes) console.say("note: " + note);
+  }
   const Json report = reportJson(model, fit);
   if (!options.report.empty()) writeFileWhole(options.report, printJson(report));
   if (!rig.copy.empty()) {

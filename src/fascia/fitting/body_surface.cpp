@@ -111,34 +111,45 @@ void BodySurface::addSamples(const RiggedModel& model, std::uint32_t triangle, d
   }
 }
 
-// What lies inside another piece of the surface (eyeballs, teeth) is not the body's outside.
-// Corners are kept if a sample of one of their triangles is.
+// A triangle stays visible if one of its samples is; those without a sample stay, too.
 void BodySurface::dropHidden() {
-  std::vector<double> areas(1, 0);
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const std::uint32_t piece = component_[sampleTriangle_[i]];
-    if (piece >= areas.size()) areas.resize(piece + 1, 0);
-    areas[piece] += samples_[i].area_m2;
-  }
-  const auto largest =
-      static_cast<std::uint32_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
   std::vector<char> hidden(samples_.size(), 0);
-  parallelFor(samples_.size(), [&](std::size_t i) {
-    const std::uint32_t piece = component_[sampleTriangle_[i]];
-    if (piece != largest) hidden[i] = inside(samples_[i].position_m, piece);
+  const bool pieces = std::any_of(component_.begin(), component_.end(),
+                                  [&](std::uint32_t c) { return c != component_.front(); });
+  parallelFor(pieces ? samples_.size() : 0, [&](std::size_t i) {
+    // From a little outside, so that doubled surfaces do not hide each other.
+    const Vec3 p = samples_[i].position_m + 1e-4 * size_m_ * samples_[i].normal;
+    hidden[i] = inside(p, component_[sampleTriangle_[i]]);
   });
+  std::vector<char> seen(mesh_.triangles.size(), 0), sampled(mesh_.triangles.size(), 0);
   std::size_t kept = 0;
-  std::vector<char> seen(mesh_.positions.size(), 0);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    if (hidden[i]) continue;
-    samples_[kept++] = samples_[i];
-    for (const std::uint32_t corner : mesh_.triangles[sampleTriangle_[i]]) {
-      if (!seen[corner]) corners_.push_back(mesh_.positions[corner].cast<double>());
-      seen[corner] = 1;
+    sampled[sampleTriangle_[i]] = 1;
+    if (hidden[i]) {
+      hiddenShare_ += samples_[i].area_m2 / area_m2_;
+      continue;
     }
+    seen[sampleTriangle_[i]] = 1;
+    samples_[kept++] = samples_[i];
   }
   samples_.resize(kept);
   sampleTriangle_ = {};
+  keepTriangles(sampled, seen);
+}
+
+void BodySurface::keepTriangles(const std::vector<char>& sampled, const std::vector<char>& seen) {
+  visible_.positions = mesh_.positions;
+  visible_.normals = mesh_.normals;
+  std::vector<char> used(mesh_.positions.size(), 0);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (sampled[t] && !seen[t]) continue;
+    visible_.triangles.push_back(mesh_.triangles[t]);
+    for (const std::uint32_t corner : mesh_.triangles[t]) {
+      if (!used[corner]) corners_.push_back(mesh_.positions[corner].cast<double>());
+      used[corner] = 1;
+    }
+  }
+  visibleHierarchy_.emplace(visible_);
 }
 
 bool BodySurface::inside(const Vec3& p, std::uint32_t except) const {
@@ -160,9 +171,9 @@ bool BodySurface::inside(const Vec3& p, std::uint32_t except) const {
 }
 
 BodySurface::Nearest BodySurface::nearest(const Vec3& p) const {
-  const auto found = hierarchy_.closest(p);
+  const auto found = visibleHierarchy_->closest(p);
   if (!found) return {p, 1e150};
-  const auto& corners = mesh_.triangles[found->triangle];
+  const auto& corners = visible_.triangles[found->triangle];
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   for (std::size_t c = 0; c < 3; ++c) {
     normal += static_cast<float>(found->weights[static_cast<int>(c)]) * mesh_.normals[corners[c]];
@@ -171,18 +182,23 @@ BodySurface::Nearest BodySurface::nearest(const Vec3& p) const {
   return {found->position, side < 0 ? -found->distance_m : found->distance_m};
 }
 
+// Pieces that the ray enters on its way must be left again before the body is; if one is open, the
+// last way out counts.
 double BodySurface::thickness(const Vec3& p, const Vec3& inward, double limit_m) const {
-  constexpr int kMostHits = 6;
-  double t = 1e-5 * size_m_;
+  constexpr int kMostHits = 12;
+  double t = 1e-5 * size_m_, last = 0;
+  int surrounding = 1;
   for (int i = 0; i < kMostHits; ++i) {
     const auto hit = hierarchy_.firstHit(p + t * inward, inward, limit_m - t);
-    if (!hit) return 0;
+    if (!hit) break;
     t += hit->t;
-    // Only where the ray leaves the body: something hidden inside, it enters first.
-    if (faceNormals_[hit->triangle].dot(inward) > 0) return t;
+    const bool leaves = faceNormals_[hit->triangle].dot(inward) > 0;
+    surrounding += leaves ? -1 : 1;
+    if (leaves) last = t;
+    if (surrounding == 0) break;
     t += 1e-6 * size_m_;
   }
-  return 0;
+  return last;
 }
 
 // The shape diameter function (Shapira, Shamir & Cohen-Or 2008): the median length of rays in a

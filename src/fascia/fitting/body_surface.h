@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <fascia/fitting/fit_flesh.h>
@@ -31,18 +32,23 @@ struct SurfaceSample {
 class BodySurface {
  public:
   BodySurface(const RiggedModel& model, const FitOptions& options);
+  BodySurface(const BodySurface&) = delete;
+  BodySurface& operator=(const BodySurface&) = delete;
 
   double height_m() const { return height_m_; }
   double area_m2() const { return area_m2_; }
   double leastFat_m() const { return leastFat_m_; }
   double fat_m(double radius_m) const;  // that a body of this local radius gets
+  // Without what lies hidden inside of another piece of the surface: eyeballs, teeth, the ends of
+  // overlapping parts.
   const std::vector<SurfaceSample>& samples() const { return samples_; }
+  double hiddenShare() const { return hiddenShare_; }            // of the area
   const std::vector<Vec3>& corners() const { return corners_; }  // of its triangles, once each
 
   // Whether the surface surrounds the point: rays in several directions vote, so that holes (eyes,
   // cuffs) and doubled sheets do not decide. `except`: a connected piece that does not count.
   bool inside(const Vec3& p, std::uint32_t except = ~0u) const;
-  // The nearest point of the surface; the distance is negative inside by the normal there.
+  // The nearest point of what is not hidden; the distance is negative inside by the normal there.
   struct Nearest {
     Vec3 position_m;
     double distance_m;
@@ -56,12 +62,15 @@ class BodySurface {
   void addSamples(const RiggedModel& model, std::uint32_t triangle, double spacing_m);
   void measureThickness(SurfaceSample& sample) const;
   void dropHidden();
+  void keepTriangles(const std::vector<char>& sampled, const std::vector<char>& seen);
 
   TriangleMesh mesh_;  // welded, with smooth normals
   std::vector<Vec3> faceNormals_;
   std::vector<std::uint32_t> component_;  // per triangle
   TriangleHierarchy hierarchy_;
-  double height_m_ = 0, size_m_ = 0, area_m2_ = 0, leastFat_m_ = 0, fatShare_ = 0;
+  TriangleMesh visible_;  // the same without the hidden triangles
+  std::optional<TriangleHierarchy> visibleHierarchy_;
+  double height_m_ = 0, size_m_ = 0, area_m2_ = 0, leastFat_m_ = 0, fatShare_ = 0, hiddenShare_ = 0;
   std::vector<SurfaceSample> samples_;
   std::vector<std::uint32_t> sampleTriangle_;  // only while it is built
   std::vector<Vec3> corners_;

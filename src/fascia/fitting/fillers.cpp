@@ -13,6 +13,7 @@ constexpr int kMostFillers = 3;             // of a part, pairs counted once
 constexpr double kLeastGap = 0.35;          // of the local radius, to count as unfilled
 constexpr double kLeastShare = 0.08;        // of the part's skin that must be unfilled
 constexpr double kLeastBodyShare = 0.0015;  // of the body's
+constexpr double kLeastThickness = 0.3;     // half, over the part's radius
 constexpr double kOffPlane = 0.3;  // of the part's radius: farther out, fillers come in pairs
 
 double areaOf(const std::vector<SurfaceSample>& samples) {
@@ -116,6 +117,8 @@ void addFillers(const FitSetting& setting, const FleshPart& part, const BoneFram
     SolidTarget target = surfaceTarget(setting.surface, sub);
     target.prior = 0.2;
     if (!fitInside(setting.surface, plane, setting.margin_m(), target, solid)) return;
+    // Slivers fill nothing and look like growths.
+    if (solid.half_m.minCoeff() < kLeastThickness * part.radius_m) return;
     const std::string name = freeName(solids, place(part.middle_m, solid.world.translation_m));
     if (!pair) {
       solids.push_back({name, solid, kFlesh, 0});

@@ -44,8 +44,8 @@ PartFit fitPart(const FitSetting& setting, const std::vector<BoneFrame>& frames,
       return fit;
     }
     fit.solids.push_back({"", solid, kFlesh, 0});
-    addFillers(setting, part, frame, fit.solids);
   }
+  addFillers(setting, part, frame, fit.solids);
   double square = 0, area_m2 = 0;
   const std::vector<double> gaps = gaps_m(part, fit.solids);
   for (std::size_t i = 0; i < gaps.size(); ++i) {
@@ -99,6 +99,14 @@ std::vector<std::size_t> dominatedPoints(const RiggedModel& model) {
   return counts;
 }
 
+void addNotes(const BodySurface& surface, const Symmetry& symmetry, FleshFit& out) {
+  const auto hidden = std::lround(100 * surface.hiddenShare());
+  if (hidden > 0)
+    out.notes.push_back(std::to_string(hidden) +
+                        " % of the surface lies inside of its other pieces: flesh may cover it");
+  if (!symmetry.present) out.notes.emplace_back("not symmetric: every side was fitted by itself");
+}
+
 }  // namespace
 
 FleshFit fitFlesh(const RiggedModel& model, const FitOptions& options) {
@@ -130,6 +138,7 @@ FleshFit fitFlesh(const RiggedModel& model, const FitOptions& options) {
     }
   }
   measureFit(surface, solids, solidJoint, out);
+  addNotes(surface, symmetry, out);
   return out;
 }
 

@@ -29,6 +29,7 @@ struct FleshFit {
   SkeletonDef skeleton;  // the rig's joints, rigid frames; x = axis of the main bend
   FleshDef flesh;        // names "upper_arm.L", "upper_arm.L biceps" …; drivers for what swells
   std::vector<JointFit> joints;
+  std::vector<std::string> notes;  // on the whole model, for a person
   double coverage = 0, residual_rms_m = 0, deepest_outside_m = 0;
 };
 

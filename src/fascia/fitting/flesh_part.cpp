@@ -171,7 +171,7 @@ SolidTarget wholeTarget(const BodySurface& surface, const FleshPart& part, const
   SolidTarget target = surfaceTarget(surface, part);
   for (const Vec3& pin : {frame.world.translation_m, frame.end_m}) {
     const double wanted_m = 0.5 * depth_m(surface, pin);
-    if (wanted_m > 0) target.pins.push_back({pin, std::min(wanted_m, part.radius_m), 0.3});
+    if (wanted_m > 0) target.pins.push_back({pin, std::min(wanted_m, part.radius_m), 1});
   }
   return target;
 }

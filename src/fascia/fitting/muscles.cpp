@@ -35,7 +35,8 @@ std::array<Belly, 3> bellies(JointMeaning meaning) {
 
 // A limb's section in its own directions: z along the bone, x towards flexion of the next joint.
 struct Limb {
-  Transform world;  // origin at the joint
+  Transform world;       // origin at the joint
+  double low_m, high_m;  // along the bone: parts at shoulders and hips begin before the joint
   double length_m, radius_m;
 };
 
@@ -52,7 +53,11 @@ Limb limbOf(const FleshPart& part, const BoneFrame& frame, const BoneFrame& next
   Vec3 x = next.world.rotation.col(0).cross(next.world.rotation.col(1));
   x -= x.dot(z) * z;
   x = x.norm() > 0.2 ? Vec3(x.normalized()) : Vec3(frame.world.rotation.col(2));
-  Limb limb{{Mat3::Identity(), frame.world.translation_m}, frame.length_m, part.radius_m};
+  Limb limb{{Mat3::Identity(), frame.world.translation_m},
+            std::clamp(part.low_m, -part.radius_m, 0.0),
+            frame.length_m,
+            frame.length_m,
+            part.radius_m};
   limb.world.rotation << x, z.cross(x), z;
   return limb;
 }
@@ -63,7 +68,7 @@ std::vector<SurfaceSample> sector(const FleshPart& part, const Limb& limb, doubl
     for (const SurfaceSample& s : *all) {
       const Vec3 local = limb.world.inverse().point(s.position_m);
       const double off = std::remainder(std::atan2(local.y(), local.x()) - angle_rad, 2 * kPi);
-      const bool along = local.z() > 0.02 * limb.length_m && local.z() < 0.98 * limb.length_m;
+      const bool along = local.z() > limb.low_m && local.z() < limb.high_m;
       if (along && std::abs(off) < kSectorHalfAngle) chosen.push_back(s);
     }
   }
@@ -86,8 +91,9 @@ bool fitBelly(const FitSetting& setting, const FleshPart& part, const BoneFrame&
   const Eigen::AngleAxisd turn(angle_rad, Vec3::UnitZ());
   solid = {};
   solid.world.rotation = limb.world.rotation * turn;
-  solid.world.translation_m = limb.world.point(turn * Vec3(0.48 * out_m, 0, 0.48 * limb.length_m));
-  solid.half_m = {0.54 * out_m, 0.8 * out_m, 0.52 * limb.length_m};
+  solid.world.translation_m =
+      limb.world.point(turn * Vec3(0.48 * out_m, 0, 0.5 * (limb.low_m + limb.high_m)));
+  solid.half_m = {0.54 * out_m, 0.8 * out_m, 0.52 * (limb.high_m - limb.low_m)};
   solid.exponent_e1 = 0.95;
   solid.exponent_e2 = 0.9;
   SolidTarget target = surfaceTarget(
@@ -119,9 +125,8 @@ void addBone(const FitSetting& setting, const FleshPart& part, const Limb& limb,
     solids.push_back({"bone", bone, kTendon, 0});
   FittedSolid condyle;
   condyle.world = limb.world;
-  const double ball_m =
-      std::min(depth_m(setting.surface, limb.world.translation_m), 1.3 * limb.radius_m);
-  condyle.half_m = Vec3::Constant(ball_m);
+  const double ball_m = std::min(depth_m(setting.surface, limb.world.translation_m), limb.radius_m);
+  condyle.half_m = Vec3::Constant(0.95 * ball_m);
   if (ball_m > 0.3 * limb.radius_m &&
       shrinkInside(setting.surface, setting.plane(part), setting.margin_m(), condyle))
     solids.push_back({"joint", condyle, kTendon, 0});
