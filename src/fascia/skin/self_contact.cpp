@@ -1,6 +1,7 @@
 #include <fascia/skin/self_contact.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <fascia/base/parallel.h>
@@ -8,8 +9,9 @@
 namespace fascia {
 namespace {
 
-// Blocks handed to a thread at once.
-constexpr std::size_t kBlocksPerTask = 8;
+// Patches handed to a thread at once.
+constexpr std::size_t kPatchesPerTask = 8;
+constexpr std::size_t kPatch = SelfContactModel::Patch::kCapacity;
 // Each halves, at least, what is left where only one of two sides has a contact of its own.
 constexpr int kPasses = 4;
 constexpr int kVelocityPasses = 2;
@@ -72,8 +74,8 @@ float SelfContact::Contact::approach(const VectorArray& velocity) const {
 SelfContact::SelfContact(const SelfContactModel& model)
     : model_(&model),
       search_(model),
-      found_(model.blocks.size() * PointBlock::kCapacity),
-      foundCounts_(model.blocks.size()),
+      found_(model.patches.size() * kPatch),
+      foundCounts_(model.patches.size()),
       hasContact_(model.points),
       pushingMass_(model.points),
       change_(model.points) {
@@ -97,57 +99,57 @@ SelfContact::Result SelfContact::resolve(const PointModel& points, float reach_m
 void SelfContact::find(const PointModel& points, float reach_m, const VectorArray& position,
                        const VectorArray& velocity, float interval_s) {
   search_.update(position, velocity, interval_s);
-  const std::size_t blocks = model_->blocks.size();
-  parallelFor((blocks + kBlocksPerTask - 1) / kBlocksPerTask, [&](std::size_t task) {
-    const std::size_t end = std::min(blocks, (task + 1) * kBlocksPerTask);
-    for (std::size_t b = task * kBlocksPerTask; b < end; ++b)
-      findOfBlock(b, points, reach_m, position, velocity, interval_s);
+  const std::size_t patches = model_->patches.size();
+  parallelFor((patches + kPatchesPerTask - 1) / kPatchesPerTask, [&](std::size_t task) {
+    const std::size_t end = std::min(patches, (task + 1) * kPatchesPerTask);
+    for (std::size_t p = task * kPatchesPerTask; p < end; ++p)
+      findOfPatch(p, points, reach_m, position, velocity, interval_s);
   });
   contacts_.clear();
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const auto first = found_.begin() + static_cast<std::ptrdiff_t>(b * PointBlock::kCapacity);
-    contacts_.insert(contacts_.end(), first, first + foundCounts_[b]);
+  for (std::size_t p = 0; p < patches; ++p) {
+    const auto first = found_.begin() + static_cast<std::ptrdiff_t>(p * kPatch);
+    contacts_.insert(contacts_.end(), first, first + foundCounts_[p]);
   }
 }
 
-// The nearest contact of each of a block's points.
-void SelfContact::findOfBlock(std::size_t block, const PointModel& points, float reach_m,
+// The nearest contact of each of a patch's points.
+void SelfContact::findOfPatch(std::size_t patch, const PointModel& points, float reach_m,
                               const VectorArray& position, const VectorArray& velocity,
                               float interval_s) {
   struct Best {
-    float nearest_m = 1e30f, keep_m;
+    std::uint32_t group;
     Touch touch;
   };
-  std::array<Best, PointBlock::kCapacity> best;
-  const PointBlock& b = model_->blocks[block];
-  const auto consider = [&](const Touch& touch) {
-    Best& known = best[touch.point - b.first];
+  std::array<Best, kPatch> best;
+  std::uint32_t any = 0;  // bit by bit: lanes with a touch
+  PointLanes lanes;
+  const auto consider = [&](std::uint32_t group, const Touch& touch) {
+    const std::uint32_t lane = touch.lane, bit = 1u << lane;
     // Equally near triangles share an edge: the choice must not depend on the order of the search.
-    if (touch.nearest_m > known.nearest_m ||
-        (touch.nearest_m == known.nearest_m && touch.triangle > known.touch.triangle))
+    if ((any & bit) && touch.nearest_m == best[lane].touch.nearest_m &&
+        touch.triangle > best[lane].touch.triangle)
       return;
-    if (points.free[touch.point] == 0) return;
-    const float keep_m = keptDistance(*model_, touch.point, touch.group);
-    const float gap_m = touch.distance_m - keep_m;
-    const Eigen::Vector3f relative =
-        get(velocity, touch.point) -
-        blend(velocity, model_->triangle(touch.triangle), touch.weights);
-    if (gap_m > reach_m + interval_s * std::max(0.f, -relative.dot(touch.normal))) return;
-    known = {touch.nearest_m, keep_m, touch};
+    any |= bit;
+    best[lane] = {group, touch};
+    lanes.nearest_m[lane] = touch.nearest_m;
   };
-  search_.search(block, {model_->gap_m + reach_m, 1, true, position, velocity},
+  search_.search(patch, {model_->gap_m + reach_m, 1, position, velocity}, lanes,
                  std::cref(consider));
-  std::uint32_t& count = foundCounts_[block] = 0;
-  for (const Best& c : best) {
-    if (c.nearest_m == Best().nearest_m) continue;
-    const float strength = std::min(1.f, (c.touch.facingLimit - c.touch.facing) / kFacingFade);
-    found_[block * PointBlock::kCapacity + count++] = {c.touch.point,
-                                                       model_->triangle(c.touch.triangle),
-                                                       c.touch.weights,
-                                                       c.touch.normal,
-                                                       c.keep_m,
-                                                       strength,
-                                                       1};
+  std::uint32_t& count = foundCounts_[patch] = 0;
+  for (; any != 0; any &= any - 1) {
+    const auto& [group, touch] = best[static_cast<std::size_t>(std::countr_zero(any))];
+    const auto point = static_cast<std::uint32_t>(model_->patches[patch].points[touch.lane]);
+    if (points.free[point] == 0) continue;
+    const Contact contact{point,
+                          model_->triangle(touch.triangle),
+                          touch.weights(),
+                          Eigen::Vector3f(touch.normal[0], touch.normal[1], touch.normal[2]),
+                          keptDistance(*model_, point, group),
+                          std::min(1.f, -touch.facing / kFacingFade),
+                          1};
+    const float approach_m = -interval_s * contact.approach(velocity);
+    if (touch.distance_m - contact.keep_m > reach_m + std::max(0.f, approach_m)) continue;
+    found_[patch * kPatch + count++] = contact;
   }
 }
 

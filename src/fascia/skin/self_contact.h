@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <fascia/base/aligned.h>
-#include <fascia/skin/point_kernels.h>
 #include <fascia/skin/point_model.h>
 #include <fascia/skin/self_contact_search.h>
 
@@ -46,7 +45,7 @@ class SelfContact {
   };
   void find(const PointModel& points, float reach_m, const VectorArray& position,
             const VectorArray& velocity, float interval_s);
-  void findOfBlock(std::size_t block, const PointModel& points, float reach_m,
+  void findOfPatch(std::size_t patch, const PointModel& points, float reach_m,
                    const VectorArray& position, const VectorArray& velocity, float interval_s);
   void shareOut(const PointModel& points, const PointSurroundings& around,
                 const VectorArray& position);
@@ -61,9 +60,9 @@ class SelfContact {
 
   const SelfContactModel* model_ = nullptr;
   SurfaceSearch search_;
-  std::vector<Contact> found_;              // blocks x PointBlock::kCapacity
-  std::vector<std::uint32_t> foundCounts_;  // per block
-  std::vector<Contact> contacts_;           // at most one per point, in their order
+  std::vector<Contact> found_;              // patches x Patch::kCapacity
+  std::vector<std::uint32_t> foundCounts_;  // per patch
+  std::vector<Contact> contacts_;           // at most one per point
   std::vector<std::uint32_t> pushed_;       // points without a contact of their own that are pushed
   // Per point; zero outside of resolve.
   std::vector<std::uint8_t> hasContact_;

@@ -16,6 +16,20 @@ HWY_BEFORE_NAMESPACE();
 namespace fascia {
 namespace HWY_NAMESPACE {
 
+// Cosine of the normals of a point and of the surface above which they do not face each other:
+// beside a crease or on an edge of a limb, not opposite.
+constexpr float kFacing = 0.2f;
+// The deepest points must face the surface that they came through this clearly: what came out at
+// the other side of a limb must not be pulled through its flanks.
+constexpr float kFacingDeep = -0.5f;
+// A point that is farther beside a triangle than this many times its height over it or depth below
+// it has nothing to do with it, …
+constexpr float kSteepest = 1.2f;
+// … unless it is nearer than this share of the gap, where directions mean little.
+constexpr float kAnySlope = 0.25f;
+// Corners' unit normals that cancel each other say nothing about the surface between them.
+constexpr float kLeastNormal = 0.5f;
+
 using DI = hn::RebindToSigned<D>;
 using VI = hn::Vec<DI>;
 
@@ -50,6 +64,10 @@ HWY_INLINE V inverseLength(V3 a) {
 }
 HWY_INLINE V3 at(const PointLanes::Lanes3& a, std::size_t l) {
   return Pointers{a.x.data(), a.y.data(), a.z.data()}.at(static_cast<std::ptrdiff_t>(l));
+}
+
+HWY_INLINE void set(PointLanes::Lanes3& a, std::size_t l, V3 v) {
+  MutablePointers{a.x.data(), a.y.data(), a.z.data()}.set(static_cast<std::ptrdiff_t>(l), v);
 }
 
 // Bounds of vectors that are added one after the other.
@@ -138,17 +156,24 @@ void updateNormalsImpl(const SelfContactModel& m, std::size_t chunk, SurfaceFram
   }
 }
 
-MotionBounds boundsOfLanesImpl(const PointLanes& lanes) {
+MotionBounds loadImpl(const SelfContactModel& m, std::size_t patch, const VectorArray& position,
+                      const VectorArray& velocity, const SurfaceFrame& frame, PointLanes& lanes) {
   const D d;
+  const DI di;
   Extent places, speeds;
-  for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d)) {
-    const V3 r = at(lanes.place, l), v = at(lanes.velocity, l);
+  for (std::size_t l = 0; l < SelfContactModel::Patch::kCapacity; l += hn::Lanes(d)) {
+    const VI k = hn::LoadU(di, m.patches[patch].points.data() + l);
+    const V3 r = gather(position, k), v = gather(velocity, k);
+    set(lanes.place, l, r), set(lanes.velocity, l, v);
+    set(lanes.normal, l, gather(frame.normal, k));
+    hn::StoreU(hn::Set(d, 1e15f), d, lanes.nearest_m.data() + l);
     places.add(r, r), speeds.add(v, v);
   }
   MotionBounds out;
   places.write(out.low, out.high);
   speeds.write(out.slowest, out.fastest);
-  out.normals = coneOf(lanes.count, [&](std::size_t l) HWY_ATTR { return at(lanes.normal, l); });
+  out.normals = coneOf(SelfContactModel::Patch::kCapacity,
+                       [&](std::size_t l) HWY_ATTR { return at(lanes.normal, l); });
   return out;
 }
 
@@ -212,12 +237,8 @@ struct TriangleTest {
     slack = hn::Set(d, f.radius[t] + m.gap_m);
   }
 
-  struct Points {
-    Mask near;    // that may touch the triangle
-    Mask surely;  // that do
-    V square;     // of the distance to its centre
-  };
-  HWY_INLINE Points test(const PointLanes& lanes, std::size_t l) const {
+  // Which points may touch it, by its plane and the sphere around it.
+  HWY_INLINE Mask mayTouch(const PointLanes& lanes, std::size_t l) const {
     const D d;
     const V3 way = at(lanes.place, l) - center;
     const V height = dot(way, normal), square = dot(way, way);
@@ -227,39 +248,151 @@ struct TriangleTest {
     const V widest = hn::MulAdd(hn::Set(d, kSteepest), hn::Abs(height), slack);
     const V farthest = hn::Add(hn::LoadU(d, lanes.nearest_m.data() + l), radius);
     const V ahead = hn::Add(front, hn::Max(approach, hn::Zero(d)));
-    const Mask inRange = hn::And(hn::And(hn::Le(height, ahead), hn::Ge(height, back)),
-                                 hn::And(hn::Le(aside, hn::Mul(widest, widest)),
-                                         hn::Le(square, hn::Mul(farthest, farthest))));
-    const V inner = hn::Mul(hn::Set(d, 0.25f), hn::Mul(radius, radius));
-    const Mask near = hn::And(inRange, hn::Lt(facing, hn::Set(d, kMayFace)));
-    const Mask opposite = hn::And(hn::Lt(facing, hn::Set(d, -kMayFace)), hn::Le(aside, inner));
-    return {near, hn::And(near, opposite), square};
+    return hn::And(hn::And(hn::And(hn::Le(height, ahead), hn::Ge(height, back)),
+                           hn::Lt(facing, hn::Set(d, kMayFace))),
+                   hn::And(hn::Le(aside, hn::Mul(widest, widest)),
+                           hn::Le(square, hn::Mul(farthest, farthest))));
   }
 };
 
-std::size_t candidatesImpl(const SelfContactModel& m, std::size_t group, const SurfaceFrame& f,
-                           const PairReach& reach, bool lower, PointLanes& lanes,
-                           std::array<Candidate, kMostCandidates>& out) {
+HWY_INLINE V clamp01(V a) {
   const D d;
-  std::size_t count = 0;
+  return hn::Min(hn::Max(a, hn::Zero(d)), hn::Set(d, 1.f));
+}
+
+// The nearest point of a triangle: its projection onto the plane where that lies inside (the
+// barycentric weights of Ericson 2005, §3.4), else the nearest point of the three edges. Relative
+// to the first corner.
+struct NearestPoint {
+  V weightB, weightC;
+
+  HWY_INLINE NearestPoint(V3 way, V3 toB, V3 toC) {
+    const D d;
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.f), tiny = hn::Set(d, 1e-30f);
+    const V bb = dot(toB, toB), bc = dot(toB, toC), cc = dot(toC, toC);
+    const V b = dot(way, toB), c = dot(way, toC);
+    const V area = hn::Max(hn::MulSub(bb, cc, hn::Mul(bc, bc)), tiny);
+    weightB = hn::Div(hn::MulSub(cc, b, hn::Mul(bc, c)), area);
+    weightC = hn::Div(hn::MulSub(bb, c, hn::Mul(bc, b)), area);
+    const Mask inside = hn::And(hn::And(hn::Ge(weightB, zero), hn::Ge(weightC, zero)),
+                                hn::Le(hn::Add(weightB, weightC), one));
+    if (hn::AllTrue(d, inside)) return;
+    const V onB = clamp01(hn::Div(b, hn::Max(bb, tiny)));
+    const V onC = clamp01(hn::Div(c, hn::Max(cc, tiny)));
+    const V opposite = hn::Max(hn::Sub(hn::Add(bb, cc), hn::Add(bc, bc)), tiny);
+    const V fromB = clamp01(hn::Div(hn::Sub(hn::Add(c, bb), hn::Add(b, bc)), opposite));
+    V edgeB = onB, edgeC = zero;
+    V least = squareTo(way, toB, toC, onB, zero);
+    const auto take = [&](V wB, V wC) HWY_ATTR {
+      const V square = squareTo(way, toB, toC, wB, wC);
+      const Mask nearer = hn::Lt(square, least);
+      edgeB = hn::IfThenElse(nearer, wB, edgeB);
+      edgeC = hn::IfThenElse(nearer, wC, edgeC);
+      least = hn::Min(square, least);
+    };
+    take(zero, onC);
+    take(hn::Sub(one, fromB), fromB);
+    weightB = hn::IfThenElse(inside, weightB, edgeB);
+    weightC = hn::IfThenElse(inside, weightC, edgeC);
+  }
+  static HWY_INLINE V squareTo(V3 way, V3 toB, V3 toC, V wB, V wC) {
+    const V3 rest = way - mulAdd(wB, toB, scaled(wC, toC));
+    return dot(rest, rest);
+  }
+};
+
+// A triangle's corners and their normals, for a closer look.
+struct Corners {
+  V3 a, toB, toC, normal, normalToB, normalToC;
+
+  HWY_INLINE Corners(const SelfContactModel& m, const VectorArray& position, const SurfaceFrame& f,
+                     std::size_t t) {
+    const auto [kA, kB, kC] = m.triangle(t);
+    const auto get = [](const VectorArray& v, std::size_t k)
+                         HWY_ATTR { return all(v.x[k], v.y[k], v.z[k]); };
+    a = get(position, kA), toB = get(position, kB) - a, toC = get(position, kC) - a;
+    normal = get(f.normal, kA);
+    normalToB = get(f.normal, kB) - normal, normalToC = get(f.normal, kC) - normal;
+  }
+};
+
+// How a vector of points touches one triangle.
+struct TouchLanes {
+  V weightB, weightC, distance, nearest, facing;
+  V3 normal;
+  Mask touching;
+
+  HWY_INLINE TouchLanes(const Corners& t, V3 place, V3 pointNormal, float gap, float deepest) {
+    const D d;
+    const V3 way = place - t.a;
+    const NearestPoint point(way, t.toB, t.toC);
+    weightB = point.weightB, weightC = point.weightC;
+    const V3 rest = way - mulAdd(weightB, t.toB, scaled(weightC, t.toC));
+    const V3 sum = mulAdd(weightB, t.normalToB, mulAdd(weightC, t.normalToC, t.normal));
+    const V square = dot(sum, sum), zero = hn::Zero(d), one = hn::Set(d, 1.f);
+    const Mask hasNormal = hn::Gt(square, hn::Set(d, kLeastNormal * kLeastNormal));
+    normal = scaled(inverseRoot(hn::IfThenElse(hasNormal, square, one)), sum);
+    distance = dot(rest, normal);
+    const V restSquare = dot(rest, rest);
+    nearest = hn::Sqrt(restSquare);
+    const V steepest = hn::Mul(hn::Set(d, kSteepest), distance);
+    const Mask above =
+        hn::Or(hn::Le(hn::NegMulAdd(distance, distance, restSquare), hn::Mul(steepest, steepest)),
+               hn::Le(nearest, hn::Set(d, kAnySlope * gap)));
+    const V depth =
+        hn::IfThenElse(hn::Lt(distance, zero), hn::Mul(nearest, hn::Set(d, 1 / deepest)), zero);
+    const V limit = hn::MulAdd(depth, hn::Set(d, kFacingDeep - kFacing), hn::Set(d, kFacing));
+    facing = hn::Sub(dot(pointNormal, normal), limit);
+    touching =
+        hn::And(hn::And(hasNormal, above), hn::And(hn::Le(depth, one), hn::Lt(facing, zero)));
+  }
+
+  // Calls visit(lane, touch) for the lanes in `allowed`.
+  template <class Visit>
+  HWY_INLINE void forEach(std::uint32_t allowed, const Visit& visit) const {
+    const D d;
+    if (hn::AllFalse(d, touching)) return;
+    alignas(64) float stored[8][SelfContactModel::kLanes];
+    const V values[8] = {weightB, weightC, normal.x, normal.y, normal.z, distance, nearest, facing};
+    for (std::size_t i = 0; i < 8; ++i) hn::Store(values[i], d, stored[i]);
+    forEachLane(touching, allowed, [&](std::size_t i) {
+      Touch touch;
+      touch.weightB = stored[0][i], touch.weightC = stored[1][i];
+      for (std::size_t c = 0; c < 3; ++c) touch.normal[c] = stored[2 + c][i];
+      touch.distance_m = stored[5][i], touch.nearest_m = stored[6][i];
+      touch.facing = stored[7][i];
+      visit(i, touch);
+    });
+  }
+};
+
+bool nearOnSurface(const SelfContactModel& m, std::size_t point, std::size_t triangle) {
+  const std::span<const std::uint32_t> near = m.nearPoints[point];
+  for (const std::uint32_t corner : m.triangle(triangle))
+    if (std::find(near.begin(), near.end(), corner) != near.end()) return true;
+  return false;
+}
+
+void findTouchesImpl(const SelfContactModel& m, std::size_t patch, std::size_t group,
+                     const VectorArray& position, const SurfaceFrame& f, const PairReach& reach,
+                     const PointLanes& lanes, const TouchVisit& visit) {
+  const D d;
+  const auto& points = m.patches[patch].points;
   forEachTriangle(m, group, f, reach, [&](std::size_t t) HWY_ATTR {
-    const TriangleTest triangle(m, f, t, reach);
-    for (std::size_t l = 0; l < lanes.count; l += hn::Lanes(d)) {
-      const TriangleTest::Points points = triangle.test(lanes, l);
-      if (hn::AllFalse(d, points.near)) continue;
-      PointLanes::Lanes<float> distance;
-      hn::StoreU(hn::Sqrt(points.square), d, distance.data());
-      forEachLane(points.near, reach.lanes >> l, [&](std::size_t i) {
-        out[count++] = {static_cast<std::uint32_t>(l + i), static_cast<std::uint32_t>(t),
-                        distance[i] - f.radius[t]};
-      });
-      if (!lower) continue;
-      forEachLane(points.surely, reach.lanes >> l, [&](std::size_t i) {
-        lanes.nearest_m[l + i] = std::min(lanes.nearest_m[l + i], distance[i]);
+    const TriangleTest test(m, f, t, reach);
+    for (std::size_t l = 0; l < points.size(); l += hn::Lanes(d)) {
+      if (hn::AllFalse(d, test.mayTouch(lanes, l))) continue;
+      const Corners corners(m, position, f, t);
+      const TouchLanes touches(corners, at(lanes.place, l), at(lanes.normal, l), m.gap_m,
+                               reach.depthScale * m.depth_m[t]);
+      touches.forEach(reach.lanes >> l, [&](std::size_t i, Touch& touch) {
+        touch.lane = static_cast<std::uint32_t>(l + i);
+        touch.triangle = static_cast<std::uint32_t>(t);
+        if (touch.nearest_m > lanes.nearest_m[l + i]) return;
+        if (!nearOnSurface(m, static_cast<std::size_t>(points[l + i]), t)) visit(touch);
       });
     }
   });
-  return count;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -271,8 +404,8 @@ namespace fascia {
 
 HWY_EXPORT(updateGroupImpl);
 HWY_EXPORT(updateNormalsImpl);
-HWY_EXPORT(boundsOfLanesImpl);
-HWY_EXPORT(candidatesImpl);
+HWY_EXPORT(loadImpl);
+HWY_EXPORT(findTouchesImpl);
 
 SurfaceFrame::SurfaceFrame(const SelfContactModel& model)
     : areaNormal(model.triangleCount() + 1),
@@ -292,33 +425,17 @@ void updateNormals(const SelfContactModel& model, std::size_t chunk, SurfaceFram
   HWY_DYNAMIC_DISPATCH(updateNormalsImpl)(model, chunk, frame);
 }
 
-namespace {
-
-// Lanes behind the last point repeat the first one.
-void load(const PointBlock& block, const VectorArray& from, PointLanes::Lanes3& to) {
-  const auto copy = [&](const FloatArray& a, PointLanes::Lanes<float>& lanes) {
-    const auto first = a.begin() + static_cast<std::ptrdiff_t>(block.first);
-    std::fill(std::copy_n(first, block.count, lanes.begin()), lanes.end(), *first);
-  };
-  copy(from.x, to.x), copy(from.y, to.y), copy(from.z, to.z);
+MotionBounds loadLanes(const SelfContactModel& model, std::size_t patch,
+                       const VectorArray& position, const VectorArray& velocity,
+                       const SurfaceFrame& frame, PointLanes& lanes) {
+  return HWY_DYNAMIC_DISPATCH(loadImpl)(model, patch, position, velocity, frame, lanes);
 }
 
-}  // namespace
-
-MotionBounds loadLanes(const PointBlock& block, const VectorArray& position,
-                       const VectorArray& velocity, const SurfaceFrame& frame, PointLanes& lanes) {
-  lanes.count = block.count;
-  load(block, position, lanes.place);
-  load(block, velocity, lanes.velocity);
-  load(block, frame.normal, lanes.normal);
-  lanes.nearest_m.fill(1e15f);
-  return HWY_DYNAMIC_DISPATCH(boundsOfLanesImpl)(lanes);
-}
-
-std::size_t findCandidates(const SelfContactModel& model, std::size_t group,
-                           const SurfaceFrame& frame, const PairReach& reach, bool lower,
-                           PointLanes& lanes, std::array<Candidate, kMostCandidates>& out) {
-  return HWY_DYNAMIC_DISPATCH(candidatesImpl)(model, group, frame, reach, lower, lanes, out);
+void findTouches(const SelfContactModel& model, std::size_t patch, std::size_t group,
+                 const VectorArray& position, const SurfaceFrame& frame, const PairReach& reach,
+                 const PointLanes& lanes, const TouchVisit& visit) {
+  HWY_DYNAMIC_DISPATCH(findTouchesImpl)
+  (model, patch, group, position, frame, reach, lanes, visit);
 }
 
 }  // namespace fascia

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+
+#include <Eigen/Core>
 
 #include <fascia/base/aligned.h>
 #include <fascia/skin/self_contact_model.h>
@@ -36,20 +39,18 @@ struct MotionBounds {
   NormalCone normals;
 };
 
-// The points of one block; lanes behind the last point repeat the first one.
+// The points of one patch; lanes behind the last point repeat it.
 struct PointLanes {
   template <class T>
-  using Lanes = std::array<T, PointBlock::kCapacity>;
+  using Lanes = std::array<T, SelfContactModel::Patch::kCapacity>;
   struct alignas(64) Lanes3 {
     Lanes<float> x, y, z;
   };
-  std::uint32_t count;
   Lanes3 place, velocity, normal;
-  // No farther than this is the nearest triangle that the point touches.
-  alignas(64) Lanes<float> nearest_m;
+  alignas(64) Lanes<float> nearest_m;  // triangles farther from a point are not looked for
 };
 
-// How a block and a group of triangles can meet until the end of the interval.
+// How a patch and a group of triangles can meet until the end of the interval.
 struct PairReach {
   float low[3], high[3];  // box of the points on their way, seen from the group
   float axis[3];          // of the points' normals: triangles that look …
@@ -60,21 +61,20 @@ struct PairReach {
   std::uint32_t lanes;    // bit by bit: which points
 };
 
-struct Candidate {
+// A point near or behind a triangle that faces it.
+struct Touch {
   std::uint32_t lane, triangle;
-  float least_m;  // the triangle is no nearer than this
+  float weightB, weightC;  // of the second and third corner, at the triangle's nearest point
+  float normal[3];         // of the surface there: smoothed, unit
+  float distance_m;        // along the normal; negative: the point is behind
+  float nearest_m;         // to the nearest point, ≥ 0
+  float facing;            // cosine of the two normals, less what it must be below
+
+  Eigen::Vector3f weights() const { return {1 - weightB - weightC, weightB, weightC}; }
 };
-inline constexpr std::size_t kMostCandidates =
-    PointBlock::kCapacity * SelfContactModel::Group::kCapacity;
+using TouchVisit = std::function<void(const Touch&)>;
 
-// Cosine of a point's and a triangle's normals above which they do not face each other. Smoothed
-// normals, which decide in the end, differ from a triangle's own.
-inline constexpr float kMayFace = 0.5f;
-// A point that is farther beside a triangle than this many times its height over it or depth below
-// it has nothing to do with it.
-inline constexpr float kSteepest = 1.2f;
-
-// Normals and boxes of a group's triangles, and bounds of the whole group.
+// Normals of a group's triangles and so on, and bounds of the whole group.
 MotionBounds updateGroup(const SelfContactModel& model, std::size_t group,
                          const VectorArray& position, const VectorArray& velocity,
                          SurfaceFrame& frame);
@@ -82,13 +82,18 @@ MotionBounds updateGroup(const SelfContactModel& model, std::size_t group,
 // Normals of the points [chunk * kLanes, (chunk + 1) * kLanes), after all groups.
 void updateNormals(const SelfContactModel& model, std::size_t chunk, SurfaceFrame& frame);
 
-MotionBounds loadLanes(const PointBlock& block, const VectorArray& position,
-                       const VectorArray& velocity, const SurfaceFrame& frame, PointLanes& lanes);
+MotionBounds loadLanes(const SelfContactModel& model, std::size_t patch,
+                       const VectorArray& position, const VectorArray& velocity,
+                       const SurfaceFrame& frame, PointLanes& lanes);
 
-// Points and triangles that may touch and are not too far for nearest_m, triangle by triangle;
-// returns how many. With `lower`, lowers nearest_m to what distances to centres tell for certain.
-std::size_t findCandidates(const SelfContactModel& model, std::size_t group,
-                           const SurfaceFrame& frame, const PairReach& reach, bool lower,
-                           PointLanes& lanes, std::array<Candidate, kMostCandidates>& out);
+// Calls visit for all touches of the points and a group's triangles that are no farther than
+// nearest_m, which it may lower. Leaves out what is too near on the surface.
+void findTouches(const SelfContactModel& model, std::size_t patch, std::size_t group,
+                 const VectorArray& position, const SurfaceFrame& frame, const PairReach& reach,
+                 const PointLanes& lanes, const TouchVisit& visit);
+
+// Cosine of a point's and a triangle's own normals above which they do not face each other. The
+// smoothed normals, which decide in the end, may differ.
+inline constexpr float kMayFace = 0.5f;
 
 }  // namespace fascia

@@ -19,6 +19,8 @@ using RestDistance = SelfContactModel::RestDistance;
 // Half the circle that a sheet can be bent into without coming nearer than the gap to itself is
 // π/2 gaps long; points twice as far apart on the surface may touch.
 constexpr double kNearGaps = kPi;
+// Patches are as wide as this many edges where their normals differ by one: narrow around limbs.
+constexpr float kTurnEdges = 4;
 // Caps the list of points that are near on the surface, for meshes much finer than the gap.
 constexpr std::size_t kMostNear = 256;
 // What of a limb's thickness a point may come through from one side.
@@ -108,12 +110,15 @@ class Preparation {
   Preparation(Triangles triangles, const VectorArray& rest, const std::vector<PointBlock>& blocks,
               float gap_m)
       : triangles_(triangles), rest_(rest), neighbors_(neighborsOf(triangles, rest.size())) {
-    model_.blocks = blocks;
     model_.gap_m = gap_m;
     model_.points = rest.size();
+    for (const PointBlock& b : blocks)
+      for (std::uint32_t l = 0; l < b.count; ++l)
+        tested_.push_back(static_cast<std::uint32_t>(b.first) + l);
   }
 
   SelfContactModel run() {
+    makePatches();
     makeGroups();
     model_.tree.build(boxes_);
     makeFans();
@@ -124,13 +129,55 @@ class Preparation {
   }
 
  private:
-  // The block that most corners of a triangle are in; the number of blocks if none is.
-  std::vector<std::uint32_t> blocksOfTriangles() const {
-    const auto none = static_cast<std::uint32_t>(model_.blocks.size());
+  // Halves the points along the widest of their six dimensions, place and normal, in whole patches.
+  void makePatches() {
+    TriangleMesh& mesh = mesh_;
+    for (std::size_t k = 0; k < model_.points; ++k) mesh.positions.push_back(get(rest_, k));
+    mesh.triangles.assign(triangles_.begin(), triangles_.end());
+    computeNormals(mesh.positions, mesh.triangles, mesh.normals);
+    meanEdge_m_ = meanEdgeLength();
+    std::erase_if(tested_, [&](std::uint32_t k) { return neighbors_[k].empty(); });
+    split(tested_);
+  }
+
+  void split(std::span<std::uint32_t> points) {
+    constexpr std::size_t kPatch = SelfContactModel::Patch::kCapacity;
+    if (points.empty()) return;
+    if (points.size() <= kPatch) {
+      std::sort(points.begin(), points.end());
+      SelfContactModel::Patch& patch = model_.patches.emplace_back();
+      patch.count = static_cast<std::uint32_t>(points.size());
+      for (std::size_t l = 0; l < kPatch; ++l)
+        patch.points[l] = static_cast<std::int32_t>(points[std::min(l, points.size() - 1)]);
+      return;
+    }
+    using Six = Eigen::Vector<float, 6>;
+    const auto at = [&](std::uint32_t k) {
+      Six six;
+      six << mesh_.positions[k], kTurnEdges * meanEdge_m_ * mesh_.normals[k];
+      return six;
+    };
+    Six low = at(points.front()), high = low;
+    for (const std::uint32_t k : points) low = low.cwiseMin(at(k)), high = high.cwiseMax(at(k));
+    Eigen::Index axis;
+    (high - low).maxCoeff(&axis);
+    const std::size_t patches = (points.size() + kPatch - 1) / kPatch, half = patches / 2 * kPatch;
+    std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half),
+                     points.end(), [&](std::uint32_t a, std::uint32_t b) {
+                       const float x = at(a)[axis], y = at(b)[axis];
+                       return x != y ? x < y : a < b;
+                     });
+    split(points.first(half));
+    split(points.subspan(half));
+  }
+
+  // The patch that most corners of a triangle are in; the number of patches if none is.
+  std::vector<std::uint32_t> patchesOfTriangles() const {
+    const auto none = static_cast<std::uint32_t>(model_.patches.size());
     std::vector<std::uint32_t> ofPoint(model_.points, none), ofTriangle;
-    for (std::uint32_t b = 0; b < none; ++b)
-      for (std::uint32_t l = 0; l < model_.blocks[b].count; ++l)
-        ofPoint[model_.blocks[b].first + l] = b;
+    for (std::uint32_t p = 0; p < none; ++p)
+      for (const std::int32_t k : model_.patches[p].points)
+        ofPoint[static_cast<std::size_t>(k)] = p;
     for (const auto& t : triangles_) {
       std::array<std::uint32_t, 3> of{ofPoint[t[0]], ofPoint[t[1]], ofPoint[t[2]]};
       std::sort(of.begin(), of.end());
@@ -141,21 +188,19 @@ class Preparation {
   }
 
   void makeGroups() {
-    const std::vector<std::uint32_t> block = blocksOfTriangles();
+    constexpr std::size_t kMost = SelfContactModel::Group::kCapacity;
+    const std::vector<std::uint32_t> patch = patchesOfTriangles();
     std::vector<std::uint32_t> order(triangles_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return block[a] < block[b]; });
-    for (std::size_t begin = 0; begin < order.size();) {
-      std::size_t end = begin;
-      while (end < order.size() && block[order[end]] == block[order[begin]]) ++end;
-      const std::size_t parts = (end - begin + SelfContactModel::Group::kCapacity - 1) /
-                                SelfContactModel::Group::kCapacity;
+                     [&](std::uint32_t a, std::uint32_t b) { return patch[a] < patch[b]; });
+    for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
+      end = begin;
+      while (end < order.size() && patch[order[end]] == patch[order[begin]]) ++end;
+      const std::size_t count = end - begin, parts = (count + kMost - 1) / kMost;
       for (std::size_t p = 0; p < parts; ++p)
-        addGroup(
-            std::span(order).subspan(begin + (end - begin) * p / parts,
-                                     (end - begin) * (p + 1) / parts - (end - begin) * p / parts));
-      begin = end;
+        addGroup(std::span(order).subspan(begin + count * p / parts,
+                                          count * (p + 1) / parts - count * p / parts));
     }
   }
 
@@ -220,17 +265,12 @@ class Preparation {
   // From rays into the flesh, up to about one edge.
   void measureDepths() {
     SelfContactModel& m = model_;
-    TriangleMesh mesh;
-    for (std::size_t k = 0; k < m.points; ++k) mesh.positions.push_back(get(rest_, k));
-    mesh.triangles.assign(triangles_.begin(), triangles_.end());
-    computeNormals(mesh.positions, mesh.triangles, mesh.normals);
-    const TriangleHierarchy hierarchy(mesh);
+    const TriangleHierarchy hierarchy(mesh_);
     const auto thickness = [&](const Vec3& from, const Vec3& normal, double most_m) {
       const Vec3 inside = from - 1e-3 * most_m * normal;
       const auto hit = hierarchy.firstHit(inside, -normal, most_m);
       return static_cast<float>(hit ? hit->t : most_m);
     };
-    const float meanEdge = meanEdgeLength();
     parallelFor(m.groups.size(), [&](std::size_t g) {
       for (std::size_t t = m.groups[g].first; t < m.groups[g].first + m.groups[g].count; ++t) {
         const auto corners = m.triangle(t);
@@ -238,14 +278,14 @@ class Preparation {
         float edge = 0;
         for (std::size_t c = 0; c < 3; ++c) {
           center += get(rest_, corners[c]).cast<double>() / 3;
-          normal += mesh.normals[corners[c]].cast<double>();
+          normal += mesh_.normals[corners[c]].cast<double>();
           edge = std::max(edge, (get(rest_, corners[c]) - get(rest_, corners[(c + 1) % 3])).norm());
         }
-        const float most_m = (m.gap_m + std::min(edge, 2 * meanEdge)) / kDepthShare;
+        const float most_m = (m.gap_m + std::min(edge, meanEdge_m_)) / kDepthShare;
         float least_m = thickness(center, normal.normalized(), most_m);
         for (const std::uint32_t c : corners)
           least_m = std::min(least_m, thickness(get(rest_, c).cast<double>(),
-                                                mesh.normals[c].cast<double>(), most_m));
+                                                mesh_.normals[c].cast<double>(), most_m));
         m.depth_m[t] = kDepthShare * least_m;
         m.groups[g].deepest_m = std::max(m.groups[g].deepest_m, m.depth_m[t]);
       }
@@ -266,16 +306,17 @@ class Preparation {
   // What touches in the rest shape already, and spreads that over the surroundings of both.
   void measureRestDistances() {
     std::vector<std::vector<RestDistance>> lists(model_.points);
-    model_.leftAlone.first.resize(model_.blocks.size() + 1);  // nothing yet
+    model_.leftAlone.first.resize(model_.patches.size() + 1);  // nothing yet
     SurfaceSearch search(model_);
     const VectorArray still(model_.points);
     search.update(rest_, still, 0);
-    const SurfaceSearch::Query query{model_.gap_m, kRestDepthScale, false, rest_, still};
-    for (std::size_t b = 0; b < model_.blocks.size(); ++b)
-      search.search(b, query, [&](const Touch& touch) {
+    const SurfaceSearch::Query query{model_.gap_m, kRestDepthScale, rest_, still};
+    PointLanes lanes;
+    for (std::size_t p = 0; p < model_.patches.size(); ++p)
+      search.search(p, query, lanes, [&](std::uint32_t group, const Touch& touch) {
         const bool crosses = touch.distance_m < kCrossing * model_.gap_m;
-        lists[touch.point].push_back(
-            {touch.group, crosses ? kLeaveAlone : (1 - kRestSlack) * touch.distance_m});
+        lists[static_cast<std::size_t>(model_.patches[p].points[touch.lane])].push_back(
+            {group, crosses ? kLeaveAlone : (1 - kRestSlack) * touch.distance_m});
       });
     spreadOverGroups(lists);
     for (int turn = 0; turn < kSpread; ++turn) spreadOverPoints(lists);
@@ -285,12 +326,12 @@ class Preparation {
       model_.restDistances.endList();
     }
     model_.leftAlone = {};
-    for (const PointBlock& block : model_.blocks) {
-      std::map<std::uint32_t, std::uint32_t> lanes;
-      for (std::uint32_t l = 0; l < block.count; ++l)
-        for (const RestDistance& r : lists[block.first + l])
-          if (r.keep_m == kLeaveAlone) lanes[r.group] |= 1u << l;
-      for (const auto& [group, bits] : lanes) model_.leftAlone.items.push_back({group, bits});
+    for (const SelfContactModel::Patch& patch : model_.patches) {
+      std::map<std::uint32_t, std::uint32_t> crossing;
+      for (std::uint32_t l = 0; l < patch.count; ++l)
+        for (const RestDistance& r : lists[static_cast<std::size_t>(patch.points[l])])
+          if (r.keep_m == kLeaveAlone) crossing[r.group] |= 1u << l;
+      for (const auto& [group, bits] : crossing) model_.leftAlone.items.push_back({group, bits});
       model_.leftAlone.endList();
     }
   }
@@ -333,6 +374,9 @@ class Preparation {
   Triangles triangles_;
   const VectorArray& rest_;
   Lists<std::uint32_t> neighbors_;
+  std::vector<std::uint32_t> tested_;  // points
+  TriangleMesh mesh_;                  // the rest shape
+  float meanEdge_m_ = 0;
   std::vector<bool> isRepeated_;  // per triangle of the model
   Lists<std::uint32_t> groupPoints_;
   std::vector<Box> boxes_;  // of groups

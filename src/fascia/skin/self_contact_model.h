@@ -30,8 +30,14 @@ struct Lists {
 struct SelfContactModel {
   // Kernels work on this many at once, or on parts of it.
   static constexpr std::size_t kLanes = 16;
-  // A run of triangles that lie together: those of one block of points. Filled up to whole vectors
-  // by repeating its last triangle.
+  // Points that lie together and look the same way; filled up by repeating the last one.
+  struct Patch {
+    static constexpr std::size_t kCapacity = 32;             // two of the widest vectors
+    alignas(64) std::array<std::int32_t, kCapacity> points;  // storage indices
+    std::uint32_t count;
+  };
+  // A run of triangles that lie together: those around one patch. Filled up to whole vectors by
+  // repeating its last triangle.
   struct Group {
     static constexpr std::size_t kCapacity = 80;  // 32 points of a mesh have about 64 triangles
     std::uint32_t first, count;                   // multiples of kLanes
@@ -42,14 +48,15 @@ struct SelfContactModel {
     std::uint32_t group;
     float keep_m;
   };
-  // Points of a block that cross a group in the rest shape, bit by bit.
+  // Points of a patch that cross a group in the rest shape, bit by bit.
   struct LeftAlone {
     std::uint32_t group, lanes;
   };
 
-  std::vector<PointBlock> blocks;  // compact patches of points that are tested
-  float gap_m = 0.002f;            // distance that is kept between two sheets of skin
-  float deepest_m = 0;             // largest of the groups'
+  float gap_m = 0.002f;  // distance that is kept between two sheets of skin
+  float deepest_m = 0;   // largest of the groups'
+
+  std::vector<Patch> patches;  // of all points that are tested
 
   std::vector<Group> groups;
   std::array<IndexArray, 3> corners;  // per triangle, group by group: storage indices
@@ -63,7 +70,7 @@ struct SelfContactModel {
   Lists<std::int32_t> fans;
   Lists<std::uint32_t> nearPoints;  // per point: too near on the surface to touch; itself included
   Lists<RestDistance> restDistances;  // per point, sorted by group
-  Lists<LeftAlone> leftAlone;         // per block, sorted by group
+  Lists<LeftAlone> leftAlone;         // per patch, sorted by group
   BoxTree tree;                       // of the groups in the rest shape
 
   std::size_t triangleCount() const { return depth_m.size(); }

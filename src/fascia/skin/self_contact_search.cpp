@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fascia/base/parallel.h>
-#include <fascia/geometry/closest_point.h>
 
 namespace fascia {
 namespace {
@@ -12,21 +11,6 @@ namespace {
 // Groups handed to a thread at once.
 constexpr std::size_t kGroupsPerTask = 32;
 constexpr std::size_t kChunksPerTask = 64;
-// Cosine of the normals of a point and of the surface above which they do not face each other:
-// beside a crease or on an edge of a limb, not opposite.
-constexpr float kFacing = 0.2f;
-// The deepest points must face the surface that they came through this clearly: what came out at
-// the other side of a limb must not be pulled through its flanks.
-constexpr float kFacingDeep = -0.5f;
-// So near to the surface, in gaps, it does not matter whether a point is beside a triangle.
-constexpr float kAnySlope = 0.25f;
-// Corners' unit normals that cancel each other say nothing about the surface between them.
-constexpr float kLeastNormal = 0.5f;
-
-Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
-
 template <class Task>
 void forEachInTasks(std::size_t count, std::size_t perTask, const Task& task) {
   parallelFor((count + perTask - 1) / perTask, [&](std::size_t t) {
@@ -63,24 +47,15 @@ Box sweptBox(const MotionBounds& m, const Vec3& mean, double interval_s, double 
   return box;
 }
 
-std::uint32_t lanesBelow(std::uint32_t count) {
-  return count >= 32 ? ~0u : (1u << count) - 1;
-}
-
-std::uint32_t lanesLeftAlone(const SelfContactModel& model, std::size_t block,
-                             std::uint32_t group) {
-  const std::span<const SelfContactModel::LeftAlone> list = model.leftAlone[block];
+// The points of a patch that may touch a group at all, bit by bit.
+std::uint32_t lanesFor(const SelfContactModel& model, std::size_t patch, std::uint32_t group) {
+  const std::uint32_t count = model.patches[patch].count;
+  const std::uint32_t used = count >= 32 ? ~0u : (1u << count) - 1;
+  const std::span<const SelfContactModel::LeftAlone> list = model.leftAlone[patch];
   const auto found = std::lower_bound(
       list.begin(), list.end(), group,
       [](const SelfContactModel::LeftAlone& l, std::uint32_t g) { return l.group < g; });
-  return found != list.end() && found->group == group ? found->lanes : 0u;
-}
-
-bool nearOnSurface(const SelfContactModel& model, std::uint32_t point, std::uint32_t triangle) {
-  const std::span<const std::uint32_t> near = model.nearPoints[point];
-  for (const std::uint32_t corner : model.triangle(triangle))
-    if (std::find(near.begin(), near.end(), corner) != near.end()) return true;
-  return false;
+  return found != list.end() && found->group == group ? used & ~found->lanes : used;
 }
 
 }  // namespace
@@ -110,32 +85,23 @@ void SurfaceSearch::update(const VectorArray& position, const VectorArray& veloc
   tree_.refit(boxes_);
 }
 
-void SurfaceSearch::search(std::size_t block, const Query& query, const Visit& visit) const {
-  const PointBlock& b = model_->blocks[block];
-  PointLanes lanes;
-  std::array<Candidate, kMostCandidates> candidates;
-  const MotionBounds points = loadLanes(b, query.position, query.velocity, frame_, lanes);
+void SurfaceSearch::search(std::size_t patch, const Query& query, PointLanes& lanes,
+                           const Visit& visit) const {
+  const MotionBounds points =
+      loadLanes(*model_, patch, query.position, query.velocity, frame_, lanes);
   const float range = std::max(query.ahead_m, query.depthScale * model_->deepest_m);
   const Box box = sweptBox(points, meanVelocity_, interval_s_, range);
   const auto lookAt = [&](std::uint32_t group) {
     PairReach reach;
     if (!meet(points, group, query, reach)) return;
-    reach.lanes = ~lanesLeftAlone(*model_, block, group) & lanesBelow(b.count);
-    const std::size_t count =
-        findCandidates(*model_, group, frame_, reach, query.nearestOnly, lanes, candidates);
-    for (std::size_t c = 0; c < count; ++c) {
-      const auto [lane, triangle, least_m] = candidates[c];
-      if (least_m > lanes.nearest_m[lane]) continue;
-      Touch touch;
-      touch.point = static_cast<std::uint32_t>(b.first) + lane;
-      touch.triangle = triangle, touch.group = group;
-      if (touches(query, touch)) visit(touch);
-    }
+    reach.lanes = lanesFor(*model_, patch, group);
+    const auto tell = [&](const Touch& touch) { visit(group, touch); };
+    findTouches(*model_, patch, group, query.position, frame_, reach, lanes, std::cref(tell));
   };
   tree_.visit([&](const Box& other) { return meets(box, other); }, lookAt);
 }
 
-// How a block and a group can meet; false: not at all.
+// How a patch and a group can meet; false: not at all.
 bool SurfaceSearch::meet(const MotionBounds& points, std::uint32_t group, const Query& query,
                          PairReach& out) const {
   const MotionBounds& other = groups_[group];
@@ -154,37 +120,6 @@ bool SurfaceSearch::meet(const MotionBounds& points, std::uint32_t group, const 
   out.interval_s = interval_s_;
   out.depthScale = query.depthScale;
   return true;
-}
-
-// Completes a touch of its point, triangle and group; false: there is none.
-bool SurfaceSearch::touches(const Query& query, Touch& touch) const {
-  if (nearOnSurface(*model_, touch.point, touch.triangle)) return false;
-  const auto corners = model_->triangle(touch.triangle);
-  const auto corner = [&](std::size_t c) -> Vec3 {
-    return get(query.position, corners[c]).cast<double>();
-  };
-  const Vec3 p = get(query.position, touch.point).cast<double>();
-  const TrianglePoint nearest = closestPointOnTriangle(p, corner(0), corner(1), corner(2));
-  touch.weights = nearest.weights.cast<float>();
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-  for (int c = 0; c < 3; ++c)
-    normal += touch.weights[c] * get(frame_.normal, corners[static_cast<std::size_t>(c)]);
-  const float length = normal.norm();
-  if (!(length > kLeastNormal)) return false;
-  touch.normal = normal / length;
-  const Eigen::Vector3f way = (p - nearest.position).cast<float>();
-  touch.distance_m = way.dot(touch.normal);
-  touch.nearest_m = way.norm();
-  const float aside_m = (way - touch.distance_m * touch.normal).norm();
-  if (aside_m > kSteepest * std::abs(touch.distance_m) &&
-      touch.nearest_m > kAnySlope * model_->gap_m)
-    return false;
-  const bool behind = touch.distance_m < 0;
-  const float depth = touch.nearest_m / (query.depthScale * model_->depth_m[touch.triangle]);
-  if (behind && !(depth <= 1)) return false;
-  touch.facing = touch.normal.dot(get(frame_.normal, touch.point));
-  touch.facingLimit = behind ? kFacing + depth * (kFacingDeep - kFacing) : kFacing;
-  return touch.facing < touch.facingLimit;
 }
 
 }  // namespace fascia
