@@ -5,14 +5,16 @@
 #include <fascia/io/byte_stream.h>
 #include <fascia/io/character_file.h>
 #include <fascia/io/file.h>
+#include <fascia/io/rig_stream.h>
 
 namespace fascia {
 namespace {
 
 // Layout, little-endian: magic, u32 version; texts (u64 length, bytes): character file, texture,
-// motion; rate, loop; the mesh; per frame time, posture, positions as float32; stats.
+// motion; the rig if the character has one (version 2); rate, loop; the mesh; per frame time,
+// posture, positions as float32; stats.
 constexpr std::string_view kMagic("FCACHE\x1a\n", 8);
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kPlainVersion = 1, kRigVersion = 2;
 constexpr std::size_t kMaxFileBytes = std::size_t{8} << 30;
 
 template <class T>
@@ -97,12 +99,14 @@ bool isCache(std::string_view bytes) {
 void writeCache(const CharacterDef& def, const Recording& recording, const std::string& path,
                 const Texture* texture) {
   const std::size_t postureSize = valueCount(def);
+  if (def.rig && !def.rig->model) throw Error("the character's rig was not read from its file");
   ByteWriter head;
   head.bytes = kMagic;
-  head.value(kVersion);
+  head.value(def.rig ? kRigVersion : kPlainVersion);  // older programs still read the plain ones
   head.text(characterText(def));
   head.text(texture ? texture->bytes : loadTexture(def).bytes);
   head.text(recording.motion);
+  if (def.rig) writeRig(*def.rig->model, recording.motion, head);
   head.value(recording.frame_rate_hz);
   head.value(static_cast<std::uint8_t>(recording.loop));
   writeMesh(head, recording.skin);
@@ -136,9 +140,9 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   if (!isCache(bytes)) in.fail("is not a Fascia cache");
   in.take(kMagic.size());
   const auto version = in.value<std::uint32_t>();
-  if (version != kVersion) {
-    in.fail("has cache format " + std::to_string(version) + ", this program reads format " +
-            std::to_string(kVersion));
+  if (version < kPlainVersion || version > kRigVersion) {
+    in.fail("has cache format " + std::to_string(version) + ", this program reads up to format " +
+            std::to_string(kRigVersion));
   }
   Cache cache;
   cache.def = readCharacterText(in.text(), file).def;
@@ -148,12 +152,17 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   }
   Recording& recording = cache.recording;
   recording.motion = in.text();
+  if (cache.def.rig) cache.def.rig->model = std::make_shared<const RiggedModel>(readRig(in));
   recording.frame_rate_hz = in.value<double>();
   if (!(recording.frame_rate_hz > 0 && recording.frame_rate_hz <= 1e6)) {
     in.fail("has a frame rate out of range");
   }
   recording.loop = in.value<std::uint8_t>() != 0;
   recording.skin = readMesh(in);
+  const std::size_t drawn = recording.skin.positions.size();
+  if (cache.def.rig && drawn != 0 && drawn != cache.def.rig->model->vertices.size()) {
+    in.fail("has a mesh that is not its rig's");
+  }
   const auto frames = in.value<std::uint64_t>();
   const std::size_t postureSize = valueCount(cache.def);
   for (std::uint64_t f = 0; f < frames; ++f) {

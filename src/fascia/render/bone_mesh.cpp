@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
+#include <unordered_set>
 
 namespace fascia {
 namespace {
@@ -11,7 +13,9 @@ using Vec3f = Eigen::Vector3f;
 
 constexpr std::uint32_t kSegments = 20;  // around
 constexpr std::uint32_t kRings = 10;     // of a ball, pole to pole
-constexpr double kBallToBone = 0.11;     // a joint ball's radius over the mean bone's length
+constexpr double kBallToBone = 0.11;     // a joint ball's radius over its bone's length
+constexpr float kLargestBall = 0.015f;   // … and at most, over the size of an imported figure
+constexpr double kShortestBone = 2e-3;   // of that size; shorter ones are joints on top of others
 
 // A long bone's outline: place along it and radius, both as a share; knob, shaft, knob.
 struct Outline {
@@ -88,18 +92,80 @@ double ballRadius(const Skeleton& skeleton) {
   return bones > 0 && length_m > 0 ? kBallToBone * length_m / bones : 0.03;
 }
 
+// Which of the skeleton's joints carry points of the rig's surface.
+std::vector<char> carriers(const Skeleton& skeleton, const RiggedModel& rig) {
+  std::vector<char> carries(rig.joints.size(), 0);
+  for (const PointWeights& weights : rig.weights)
+    for (std::size_t k = 0; k < PointWeights::kMost; ++k)
+      if (weights.weight[k] > 0) carries[weights.joint[k]] = 1;
+  std::unordered_set<std::string_view> names;
+  for (std::size_t j = 0; j < carries.size(); ++j)
+    if (carries[j]) names.insert(rig.joints[j].name);
+  std::vector<char> out(skeleton.jointCount());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = names.contains(skeleton.joint(JointId(static_cast<std::int64_t>(i))).name);
+  return out;
+}
+
+// A shaft counts if it lies between carriers, or leads from one to a tip.
+std::vector<char> shafts(const Skeleton& skeleton, const std::vector<char>& carries,
+                         double shortest_m) {
+  const std::size_t count = carries.size();
+  std::vector<char> above(carries), below(carries);
+  const auto parentOf = [&](std::size_t i) {
+    return skeleton.parent(JointId(static_cast<std::int64_t>(i)));
+  };
+  for (std::size_t i = 0; i < count; ++i)
+    if (parentOf(i).valid() && above[parentOf(i).index()]) above[i] = 1;
+  for (std::size_t i = count; i-- > 0;)
+    if (parentOf(i).valid() && below[i]) below[parentOf(i).index()] = 1;
+  std::vector<char> out(count, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!parentOf(i).valid()) continue;
+    const std::size_t parent = parentOf(i).index();
+    const double length_m = skeleton.joint(JointId(static_cast<std::int64_t>(i))).offset_m.norm();
+    out[i] = above[parent] && (carries[parent] || below[i]) && length_m > shortest_m;
+  }
+  return out;
+}
+
 }  // namespace
 
-TriangleMesh boneMesh(const Skeleton& skeleton, const PosedSkeleton& posed) {
+BoneSizes boneSizes(const Skeleton& skeleton) {
+  const std::size_t count = skeleton.jointCount();
+  return {std::vector<float>(count, static_cast<float>(ballRadius(skeleton))),
+          std::vector<char>(count, 1)};
+}
+
+BoneSizes boneSizes(const Skeleton& skeleton, const RiggedModel& rig) {
+  const std::size_t count = skeleton.jointCount();
+  const auto size_m = static_cast<float>(rig.size_m());
+  BoneSizes sizes;
+  sizes.hasShaft = shafts(skeleton, carriers(skeleton, rig), kShortestBone * rig.size_m());
+  std::vector<float> longest_m(count, 0.f);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!sizes.hasShaft[i]) continue;
+    const JointId id(static_cast<std::int64_t>(i));
+    const auto length_m = static_cast<float>(skeleton.joint(id).offset_m.norm());
+    for (const std::size_t end : {i, skeleton.parent(id).index()})
+      longest_m[end] = std::max(longest_m[end], length_m);
+  }
+  for (const float length_m : longest_m)
+    sizes.ball_m.push_back(
+        std::min(static_cast<float>(kBallToBone) * length_m, kLargestBall * size_m));
+  return sizes;
+}
+
+TriangleMesh boneMesh(const Skeleton& skeleton, const PosedSkeleton& posed,
+                      const BoneSizes& sizes) {
   TriangleMesh mesh;
-  const auto radius_m = static_cast<float>(ballRadius(skeleton));
   for (std::size_t i = 0; i < skeleton.jointCount(); ++i) {
     const JointId parent = skeleton.parent(JointId(static_cast<std::int64_t>(i)));
     const Vec3f here = posed.joint_world[i].translation_m.cast<float>();
-    addBall(mesh, here, radius_m);
-    if (parent.valid())
+    if (sizes.ball_m[i] > 0) addBall(mesh, here, sizes.ball_m[i]);
+    if (parent.valid() && sizes.hasShaft[i])
       addShaft(mesh, posed.joint_world[parent.index()].translation_m.cast<float>(), here,
-               0.9f * radius_m);
+               0.9f * std::max(sizes.ball_m[i], sizes.ball_m[parent.index()]));
   }
   computeNormals(mesh.positions, mesh.triangles, mesh.normals);
   return mesh;

@@ -16,6 +16,14 @@ constexpr float kVeilOpacity = 0.24f;           // of skin that shows the layers
 constexpr std::size_t kSkinTriangles = 10'000;  // fewer: corners show in the outline
 constexpr float kTendonAspect = 1.25f;          // rounder solids are drawn without tendons
 
+bool hasRig(const Character& character) {
+  return character.def().rig && character.def().rig->model;
+}
+
+bool isVeil(const Layers& layers) {
+  return layers.skeleton || layers.muscle;
+}
+
 Material skinMaterial(const Character& character, const SceneOptions& options, double height_m) {
   Material material;
   material.kind = Material::Kind::skin;
@@ -28,7 +36,7 @@ Material skinMaterial(const Character& character, const SceneOptions& options, d
   }
   material.roughness = 0.5f;
   material.scatter_m = kScatterOfHeight * static_cast<float>(height_m);
-  if (options.layers.skeleton || options.layers.muscle) {
+  if (isVeil(options.layers)) {
     material.opacity = kVeilOpacity;
     material.texture = nullptr;  // a pattern would compete with what it is to show
     material.color = Rgb(0.88f, 0.72f, 0.63f);
@@ -41,6 +49,26 @@ TriangleMesh pictureMesh(const TriangleMesh& skin) {
   TriangleMesh mesh = skin;
   computeNormals(mesh.positions, mesh.triangles, mesh.normals);
   return smoothed(mesh, kSkinTriangles);
+}
+
+void addGridSkin(const Character& character, const TriangleMesh& skin, const SceneOptions& options,
+                 double height_m, Scene& scene) {
+  Drawable surface;
+  surface.mesh = pictureMesh(skin);
+  surface.material = skinMaterial(character, options, height_m);
+  scene.drawables.push_back(std::move(surface));
+}
+
+void addRigSkin(const Character& character, const TriangleMesh& skin, const SceneOptions& options,
+                double height_m, Scene& scene) {
+  RigSurface::Look look;
+  if (const auto& def = character.def().skin) look.color = Rgb(def->color.data());
+  look.scatter_m = kScatterOfHeight * static_cast<float>(height_m);
+  if (isVeil(options.layers)) look.veil = kVeilOpacity;
+  if (options.rig_surface)
+    options.rig_surface->addTo(scene, skin, look);
+  else
+    RigSurface(character.def().rig->model).addTo(scene, skin, look);
 }
 
 // Coordinates in [-1, 1]³ with the longest side of the solid along z, where fibres run. A solid
@@ -113,7 +141,10 @@ void addOrnaments(const Character& character, const CharacterState& state,
 void addBones(const Character& character, const CharacterState& state, bool insideMuscle,
               Scene& scene) {
   Drawable bones;
-  bones.mesh = boneMesh(character.skeleton(), state.skeleton);
+  const Skeleton& skeleton = character.skeleton();
+  bones.mesh = boneMesh(
+      skeleton, state.skeleton,
+      hasRig(character) ? boneSizes(skeleton, *character.def().rig->model) : boneSizes(skeleton));
   bones.material.kind = Material::Kind::bone;
   bones.material.color = Rgb(0.93f, 0.89f, 0.79f);
   bones.material.roughness = 0.42f;
@@ -180,10 +211,7 @@ Scene buildScene(const Character& character, const CharacterState& state, const 
   if (layers.skin) {
     addOrnaments(character, state, options, scene);
     if (!skin.positions.empty()) {
-      Drawable surface;
-      surface.mesh = pictureMesh(skin);
-      surface.material = skinMaterial(character, options, height_m);
-      scene.drawables.push_back(std::move(surface));
+      (hasRig(character) ? addRigSkin : addGridSkin)(character, skin, options, height_m, scene);
     }
   }
   if (options.ground) scene.drawables.push_back(groundDisc(framing, options.ground_height_m));

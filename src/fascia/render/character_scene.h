@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include <fascia/character/character.h>
+#include <fascia/render/rig_surface.h>
 #include <fascia/render/scene.h>
 
 namespace fascia {
@@ -17,7 +18,8 @@ Layers parseLayers(std::string_view text);
 
 struct SceneOptions {
   Layers layers;
-  std::shared_ptr<const Pixels> skin_texture;  // null: the skin's plain colour
+  std::shared_ptr<const Pixels> skin_texture;     // null: the skin's plain colour
+  std::shared_ptr<const RigSurface> rig_surface;  // of an imported character; null: made each time
   bool ground = true;
   double ground_height_m = 0;  // where characters stand
   CameraSpec camera;
@@ -28,7 +30,8 @@ struct SceneOptions {
 
 // The picture of a character at one moment. `skin` is its surface in that state (skinSurface, or a
 // recording's frame); it may be empty. Only skeleton, flesh and ornaments of the state are read, so
-// a state whose skin was played from a file does as well.
+// a state whose skin was played from a file does as well. The surface of an imported character is
+// in the order of its RiggedModel::vertices, with normals.
 Scene buildScene(const Character& character, const CharacterState& state, const TriangleMesh& skin,
                  const SceneOptions& options);
 

@@ -24,7 +24,10 @@ struct Material {
   Kind kind = Kind::plain;
   Rgb color{0.8f, 0.8f, 0.8f};            // multiplies the texture where there is one
   std::shared_ptr<const Pixels> texture;  // may be null; held while the renderer caches it
+  bool tiled = false;                     // the texture repeats upwards too, not only around
   float roughness = 0.5f;                 // [0.03, 1]
+  float metallic = 0;                     // plain: [0, 1], mirrors in its own colour
+  float wrap = 0;                         // plain: [0, 1], light creeps around: fur, cloth
   float scatter_m = 0.01f;    // skin: how far light travels inside; 1 % of the height looks soft
   float translucency = 0.6f;  // skin: [0, 1], light through thin parts
   float opacity = 1;          // [0, 1]; below 1 the rim stays denser, so that the outline reads

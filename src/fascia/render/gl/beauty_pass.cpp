@@ -46,6 +46,8 @@ void setMaterial(Program& program, const DrawItem& item) {
   program.set("scatter_m", std::max(material.scatter_m, 0.f));
   program.set("translucency", std::clamp(material.translucency, 0.f, 1.f));
   program.set("opacity", std::clamp(material.opacity, 0.f, 1.f));
+  program.set("metallic", std::clamp(material.metallic, 0.f, 1.f));
+  program.set("wrap", std::clamp(material.wrap, 0.f, 1.f));
   program.set("textured", item.texture != 0 ? 1 : 0);
 }
 
@@ -121,6 +123,9 @@ void BeautyPass::drawLit(const Frame& frame, const OcclusionPass& occlusion, con
   setStudio(program, frame);
   setMaterial(program, item);
   bindTexture(kColorUnit, item.texture);
+  if (item.texture != 0)
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T,
+                    item.material().tiled ? GL_REPEAT : GL_CLAMP_TO_EDGE);
   bindTexture(kLookupUnit, scatterLookup_.id());
   bindTexture(kNoiseUnit, noise_.id());
   program.set("colorTexture", kColorUnit);

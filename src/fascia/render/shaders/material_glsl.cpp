@@ -9,6 +9,7 @@ in vec2 textureCoordinate;
 in float curvature_per_m;
 uniform vec3 eye_world, baseColor;  // baseColor is linear
 uniform float roughness, scatter_m, translucency, opacity, ghost, thicknessScale_m;
+uniform float metallic, wrap;
 uniform int textured;
 uniform sampler2D colorTexture, scatterLookup, noiseTexture;
 layout(location = 0) out vec4 result;
@@ -87,9 +88,12 @@ vec3 radiance(vec3 n, vec3 v, Occlusion o) {
 #ifdef PLAIN
 vec3 radiance(vec3 n, vec3 v, Occlusion o) {
   vec3 a = albedo();
-  vec3 light = max(dot(n, keyDirection), 0.0) * o.key * keyColor +
-               ambientLight(n) * colouredOpenness(o.openness, a);
-  return a * light + specular(n, v, roughness, 0.045, o);
+  // Divided so that as much light leaves as came in: Green, "Real-Time Approximations to Subsurface
+  // Scattering" (GPU Gems 2004), with the cosine's energy kept.
+  float facing = max(dot(n, keyDirection) + wrap, 0.0) / ((1.0 + wrap) * (1.0 + wrap));
+  vec3 light = facing * o.key * keyColor + ambientLight(n) * colouredOpenness(o.openness, a);
+  vec3 mirror = specular(n, v, roughness, 0.045, o);
+  return mix(a * light + mirror, a * specular(n, v, roughness, 1.0, o), metallic);
 }
 #endif
 
