@@ -32,6 +32,9 @@ Examples:
   fascia bench deformation fox.fascia.json human.fascia.json --motion Walk --pictures /tmp/bends
   fascia bench deformation human.glb --poses --angles 90 --json)";
 
+// Limbs that are bent as far in the bind pose already show nothing.
+constexpr double kLeastTurn_deg = 10;
+
 struct DeformationOptions {
   std::vector<std::string> files;
   std::string motion;
@@ -119,8 +122,10 @@ class Contest {
       console_.hint(entrant_.name + " is a rig without flesh: Fascia does not take part");
     Json::List bends;
     for (const Hinge& hinge : findHinges(model_))
-      for (const double angle_deg : options_.angles_deg) bends.push_back(bend(hinge, angle_deg));
-    if (bends.empty()) console_.say("no joint bends like an elbow or a knee");
+      for (const double angle_deg : options_.angles_deg)
+        if (degrees(hinge.turnFor_rad(radians(angle_deg))) > kLeastTurn_deg)
+          bends.push_back(bend(hinge, angle_deg));
+    if (bends.empty()) console_.say("no joint bends so far like an elbow or a knee");
     Json result = Json::Object{{"name", entrant_.name},
                                {"points", static_cast<int>(model_.points_m.size())},
                                {"triangles", static_cast<int>(model_.triangles.size())},

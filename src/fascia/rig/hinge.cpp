@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include <fascia/rig/joint_meaning.h>
 
@@ -17,15 +18,19 @@ constexpr double kClearlyBent_rad = radians(15);
 // Shorter sums of unit vectors point nowhere in particular.
 constexpr double kLeastAxis = 0.01;
 
-// The elbows and knees by their meaning: the first joint of each lower arm and leg.
+// The elbows and knees by their names: the first joint of each lower arm and leg, or of what is
+// called lower on four legs.
 std::vector<bool> namedHinges(const RiggedModel& model) {
   const std::vector<JointMeaning> meanings = guessMeanings(model.joints);
-  std::vector<bool> named(meanings.size(), false);
-  for (std::size_t j = 1; j < named.size(); ++j) {
+  const auto isLower = [&](std::size_t j) {
     const BodyPart part = meanings[j].part;
-    const BodyPart above = meanings[static_cast<std::size_t>(model.joints[j].parent)].part;
-    named[j] = (part == BodyPart::lowerArm || part == BodyPart::lowerLeg) && above != part;
-  }
+    if (part == BodyPart::lowerArm || part == BodyPart::lowerLeg) return true;
+    const std::string& name = model.joints[j].name;
+    return name.find("lower") != std::string::npos || name.find("Lower") != std::string::npos;
+  };
+  std::vector<bool> named(meanings.size(), false);
+  for (std::size_t j = 1; j < named.size(); ++j)
+    named[j] = isLower(j) && !isLower(static_cast<std::size_t>(model.joints[j].parent));
   return named;
 }
 
@@ -196,17 +201,20 @@ HingeRegion regionOf(const RiggedModel& model, const Hinge& hinge) {
   const Joints joints(model);
   std::vector<bool> moved(model.joints.size());
   for (std::size_t j = 0; j < moved.size(); ++j) moved[j] = joints.isBelow(j, hinge.upper);
-  const double radius_m = 0.5 * hinge.shorter_m();
+  const Vec3 up = -hinge.upper_m.normalized(), down = hinge.lower_m.normalized();
+  const double reach_m = 0.5 * hinge.shorter_m();
   std::vector<bool> limb(model.points_m.size()), near(model.points_m.size());
   HingeRegion region;
   for (std::uint32_t p = 0; p < limb.size(); ++p) {
+    const Vec3 from = model.points_m[p].cast<double>() - hinge.center_m;
     limb[p] = moved[model.weights[p].joint[0]];
-    near[p] = limb[p] && (model.points_m[p].cast<double>() - hinge.center_m).norm() <= radius_m;
+    near[p] = limb[p] && from.dot(up) <= reach_m && from.dot(down) <= reach_m;
     if (near[p]) region.pointsNearJoint.push_back(p);
   }
   for (const auto& t : model.triangles) {
-    if (limb[t[0]] && limb[t[1]] && limb[t[2]]) region.limb.push_back(t);
-    if (near[t[0]] && near[t[1]] && near[t[2]]) region.nearJoint.push_back(t);
+    if (!limb[t[0]] || !limb[t[1]] || !limb[t[2]]) continue;
+    region.limb.push_back(t);
+    if (near[t[0]] || near[t[1]] || near[t[2]]) region.nearJoint.push_back(t);
   }
   return region;
 }

@@ -30,8 +30,8 @@ std::vector<Hinge> findHinges(const RiggedModel& model, std::size_t most = 2);
 // Bends one hinge from the bind pose to a flexion within a second and holds it for another.
 SampledMotion bendMotion(const RiggedModel& model, const Hinge& hinge, double flexion_rad);
 
-// The part of the surface that a hinge moves, cut off where the limb begins; triangles near the
-// joint (within half of the shorter segment, at rest), and their points.
+// The part of the surface that a hinge moves, cut off where the limb begins; its points near the
+// joint (at rest, along either segment, within half of the shorter one), and their triangles.
 struct HingeRegion {
   std::vector<std::array<std::uint32_t, 3>> limb, nearJoint;
   std::vector<std::uint32_t> pointsNearJoint;  // increasing
