@@ -10,6 +10,7 @@
 #include <fascia/io/file.h>
 #include <fascia/io/gltf_document.h>
 #include <fascia/io/rig_import.h>
+#include <fascia/io/rig_to_gltf.h>
 
 #include "commands.h"
 #include "console.h"
@@ -78,8 +79,16 @@ RigFile placeRig(const FleshOptions& options) {
   return rig;
 }
 
-void copyRig(const FleshOptions& options, const RigFile& rig) {
-  GltfDocument::read(options.input).writeGlb(rig.copy);
+// A glTF keeps everything that it holds. Of other formats what we understand is kept; `def.scale`
+// is in its points then.
+void copyRig(const RiggedModel& model, const FleshOptions& options, RigFile& rig) {
+  const std::string ending = endingOf(options.input);
+  if (ending == ".glb" || ending == ".gltf") {
+    GltfDocument::read(options.input).writeGlb(rig.copy);
+    return;
+  }
+  writeRigGlb(model, rig.copy);
+  rig.def.scale = 1;
 }
 
 void refuseToOverwrite(const std::string& path, bool force) {
@@ -147,7 +156,7 @@ void flesh(const FleshOptions& options, const Console& console) {
   const Json report = reportJson(model, fit);
   if (!options.report.empty()) writeFileWhole(options.report, printJson(report));
   if (!rig.copy.empty()) {
-    copyRig(options, rig);
+    copyRig(model, options, rig);
     console.say("wrote " + rig.copy);
   }
   CharacterDef def;

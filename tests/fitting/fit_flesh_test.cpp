@@ -41,6 +41,68 @@ TEST(FitFlesh, FillsEveryPartAndStaysInside) {
   EXPECT_EQ(fit.deepest_outside_m, 0);
 }
 
+const FleshSolidDef& solidOf(const FleshFit& fit, const std::string& name) {
+  for (const FleshSolidDef& one : fit.flesh.solids) {
+    if (one.name == name) return one;
+  }
+  throw std::runtime_error("no solid " + name);
+}
+
+// Two bones whose elbow bends about z by up to 1.2 rad.
+RiggedModel bendingArmPair() {
+  RiggedModel model = armPair();
+  SampledMotion motion;
+  motion.joints = {"forearm.L"};
+  motion.translation_m.assign(20, Eigen::Vector3f(0.3f, 0, 0));
+  for (int i = 0; i < 20; ++i)
+    motion.rotation.emplace_back(
+        Eigen::AngleAxisf(0.063f * static_cast<float>(i), Eigen::Vector3f::UnitZ()));
+  model.motions.push_back(motion);
+  return model;
+}
+
+TEST(FitFlesh, TurnsAJointsXAxisIntoItsBend) {
+  const FleshFit fit = fitFlesh(bendingArmPair());
+  Diagnostics diagnostics;
+  const Skeleton skeleton(fit.skeleton, "", diagnostics);
+  ASSERT_TRUE(diagnostics.ok());
+  PosedSkeleton posed;
+  skeleton.pose(skeleton.restPosture(), posed);
+  const auto frame = [&](const char* name) {
+    return posed.joint_world[skeleton.find(name).index()];
+  };
+  EXPECT_LT((frame("forearm.L").translation_m - Vec3(0.5, 1, 0)).norm(), 1e-6);
+  EXPECT_LT((frame("forearm.L").rotation.col(0) - Vec3::UnitZ()).norm(), 1e-5);
+  EXPECT_LT((frame("forearm.L").rotation.col(1) - Vec3::UnitX()).norm(), 1e-5);
+  // The mirrored elbow has no motion of its own: it bends as its image does.
+  EXPECT_LT((frame("forearm.R").rotation.col(0) + Vec3::UnitZ()).norm(), 1e-5);
+  EXPECT_LT((frame("forearm.R").rotation.col(1) + Vec3::UnitX()).norm(), 1e-5);
+}
+
+TEST(FitFlesh, PutsFlexorsWhereTheElbowBendsToAndLetsThemSwell) {
+  const FleshFit fit = fitFlesh(bendingArmPair());
+  const FleshSolidDef& biceps = solidOf(fit, "upper_arm.L biceps");
+  Diagnostics diagnostics;
+  const Skeleton skeleton(fit.skeleton, "", diagnostics);
+  PosedSkeleton posed;
+  skeleton.pose(skeleton.restPosture(), posed);
+  const Vec3 at = posed.joint_world[skeleton.find("upper_arm.L").index()].point(biceps.position_m);
+  EXPECT_GT(at.y(), 1.01);  // +rz lifts the forearm
+  ASSERT_EQ(biceps.drivers.size(), 3u);
+  const std::size_t count = biceps.drivers[0].points.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    double volume = 1, rest = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(biceps.drivers[axis].joint, "forearm.L");
+      volume *= biceps.drivers[axis].points[i].parameter;
+      rest *= biceps.solid.parameters[axis];
+    }
+    EXPECT_NEAR(volume / rest, 1, 1e-12);
+  }
+  EXPECT_GT(biceps.drivers[0].points.back().parameter, 1.05 * biceps.solid.parameters[0]);
+  EXPECT_LT(biceps.drivers[2].points.back().parameter, 0.9 * biceps.solid.parameters[2]);
+}
+
 TEST(FitFlesh, SaysWhyAJointHasNone) {
   const FleshFit fit = fitFlesh(armPair());
   EXPECT_TRUE(of(fit, "hand.L").solids.empty());

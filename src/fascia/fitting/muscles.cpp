@@ -41,7 +41,11 @@ struct Limb {
 };
 
 bool isLimb(const FitSetting& setting, const FleshPart& part, const BoneFrame& frame,
-            const BoneFrame* next) {
+            const BoneFrame* next, JointMeaning meaning) {
+  for (const BodyPart broad :
+       {BodyPart::clavicle, BodyPart::pelvis, BodyPart::hand, BodyPart::foot, BodyPart::toe}) {
+    if (meaning.part == broad) return false;
+  }
   return next && !part.central && frame.length_m > kLeastSlenderness * part.radius_m &&
          part.high_m - part.low_m > kLeastSlenderness * part.radius_m &&
          part.radius_m > kLeastRadius * setting.surface.leastFat_m();
@@ -117,7 +121,7 @@ void addBone(const FitSetting& setting, const FleshPart& part, const Limb& limb,
   FittedSolid bone;
   bone.world = limb.world;
   bone.world.translation_m = limb.world.point({0, 0, 0.5 * limb.length_m});
-  const double radius_m = std::min(kBoneRadius * limb.radius_m, 0.9 * least_m);
+  const double radius_m = std::min(kBoneRadius * limb.radius_m, 0.45 * least_m);
   bone.half_m = {radius_m, radius_m, 0.52 * limb.length_m};
   bone.exponent_e1 = 0.5;
   if (radius_m > setting.margin_m() &&
@@ -127,7 +131,7 @@ void addBone(const FitSetting& setting, const FleshPart& part, const Limb& limb,
   condyle.world = limb.world;
   const double ball_m = std::min(depth_m(setting.surface, limb.world.translation_m), limb.radius_m);
   condyle.half_m = Vec3::Constant(0.95 * ball_m);
-  if (ball_m > 0.3 * limb.radius_m &&
+  if (ball_m > 0.4 * limb.radius_m &&
       shrinkInside(setting.surface, setting.plane(part), setting.margin_m(), condyle))
     solids.push_back({"joint", condyle, kTendon, 0});
 }
@@ -144,7 +148,7 @@ std::vector<NamedSolid> fitMuscles(const FitSetting& setting, const FleshPart& p
                                    const BoneFrame& frame, const BoneFrame* next,
                                    JointMeaning meaning) {
   std::vector<NamedSolid> solids;
-  if (!isLimb(setting, part, frame, next)) return solids;
+  if (!isLimb(setting, part, frame, next, meaning)) return solids;
   const Limb limb = limbOf(part, frame, *next);
   for (const Belly& belly : bellies(meaning)) {
     FittedSolid solid;
