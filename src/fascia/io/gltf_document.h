@@ -44,12 +44,14 @@ class GltfDocument {
   int addShorts(std::span<const std::uint16_t> values, std::string_view type,
                 bool normalized = false);
   int addIndices(std::span<const std::uint32_t> values);
+  int addImage(std::span<const std::uint8_t> encoded);  // PNG, JPEG …; returns the image's index
   // A sparse accessor over zeros: values only at `indices` (increasing).
   int addSparseFloats(std::span<const std::uint32_t> indices, std::span<const float> values,
                       std::size_t count, std::string_view type, bool withRange = false);
 
   // Data that no accessor uses any more are left out. Everything, pictures too, goes into the file.
   void writeGlb(const std::string& path) const;
+  std::string glb() const;  // the same in memory
 
  private:
   void loadBuffers(std::string_view binaryChunk);

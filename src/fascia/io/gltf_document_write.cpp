@@ -166,15 +166,14 @@ std::string glbOf(const Json& json, std::string binary, const std::string& path)
 }  // namespace
 
 void GltfDocument::embedImages() {
-  Json* images = findMember(json_, "images");
-  if (!images || !images->is(Json::Kind::list)) return;
-  for (std::size_t i = 0; i < images->list().size(); ++i) {
-    if (!findMember(images->list()[i], "uri")) continue;
+  const std::size_t count = root()["images"].size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!root()["images"].at(i)["uri"]) continue;
     const std::vector<std::uint8_t> bytes = image(static_cast<int>(i));
     const char* mimeType = mimeTypeOf(bytes);
     if (!mimeType) continue;  // not found, or nothing that a .glb may hold: stays where it is
     const int view = addView(bytes.data(), bytes.size(), 0);
-    Json& entry = images->list()[i];
+    Json& entry = findMember(json_, "images")->list()[i];
     eraseMember(entry, "uri");
     putMember(entry, "bufferView", view);
     putMember(entry, "mimeType", mimeType);
@@ -182,6 +181,10 @@ void GltfDocument::embedImages() {
 }
 
 void GltfDocument::writeGlb(const std::string& path) const {
+  writeFileWhole(path, glb());
+}
+
+std::string GltfDocument::glb() const {
   GltfDocument packed = *this;
   packed.embedImages();
   checkGltfReferences(packed.root());
@@ -200,7 +203,7 @@ void GltfDocument::writeGlb(const std::string& path) const {
     buffer.set("byteLength", Json::Number{std::to_string(binary.size())});
     ensureList(json, "buffers").list().push_back(std::move(buffer));
   }
-  writeFileWhole(path, glbOf(json, std::move(binary), path));
+  return glbOf(json, std::move(binary), path_);
 }
 
 }  // namespace fascia

@@ -66,13 +66,15 @@ RawSkin readSkin(const GltfDocument& document, int index, std::size_t nodeCount,
 
 // All joints at one place in the mesh, though their nodes are not: these matrices are fillers.
 bool sayNothing(const RawSkin& skin, const GltfScene& scene) {
-  if (skin.nodes.size() < 2) return false;
-  const Affine &bind = skin.bind[0], &node = scene.rest_world[at(skin.nodes[0])];
+  std::size_t first = skin.nodes.size();
   bool nodesDiffer = false;
   for (std::size_t i = 0; i < skin.nodes.size(); ++i) {
-    if (!skin.bind[i].matrix().isApprox(bind.matrix(), 1e-9)) return false;
-    nodesDiffer =
-        nodesDiffer || !scene.rest_world[at(skin.nodes[i])].matrix().isApprox(node.matrix(), 1e-6);
+    if (!skin.sound[i]) continue;
+    first = std::min(first, i);
+    if (!skin.bind[i].matrix().isApprox(skin.bind[first].matrix(), 1e-9)) return false;
+    const Affine &a = scene.rest_world[at(skin.nodes[i])],
+                 &b = scene.rest_world[at(skin.nodes[first])];
+    nodesDiffer = nodesDiffer || !a.matrix().isApprox(b.matrix(), 1e-6);
   }
   return nodesDiffer;
 }

@@ -138,7 +138,7 @@ void closeLoop(double size_m, SampledMotion& motion) {
 
 struct Plan {
   double rate_hz = 0;
-  std::size_t frames = 1;
+  std::size_t frames = 0;  // 0: the motion is left out
 };
 
 // Frames of a clip: the first and the last are its first and its last key.
@@ -153,18 +153,23 @@ Plan planOf(const GltfClip& clip, double rate_hz) {
 std::vector<Plan> planMotions(const std::vector<GltfClip>& clips, std::size_t nodes,
                               RiggedModel& model) {
   std::vector<Plan> plans;
-  double jointFrames = 0;
+  const double most = kMostJointFrames / static_cast<double>(nodes);
+  double frames = 0;
   for (const GltfClip& clip : clips) {
-    plans.push_back(planOf(clip, clip.naturalRate_hz()));
-    jointFrames += static_cast<double>(plans.back().frames) * static_cast<double>(nodes);
+    const bool endless = (clip.end_s() - clip.start_s()) * kSlowest_hz > most;
+    plans.push_back(endless ? Plan{0, 0} : planOf(clip, clip.naturalRate_hz()));
+    frames += static_cast<double>(plans.back().frames);
+    if (endless)
+      model.notes.push_back("the motion " + jsonText(clip.name) + " is too long: left out");
   }
-  if (jointFrames <= kMostJointFrames) return plans;
-  const double share = kMostJointFrames / jointFrames;
-  model.notes.push_back("the motions are long: kept at " +
+  if (frames <= most) return plans;
+  const double share = most / frames;
+  model.notes.push_back("the motions are long: about " +
                         std::to_string(static_cast<int>(std::ceil(100 * share))) +
-                        " % of their frames");
-  for (std::size_t i = 0; i < clips.size(); ++i)
-    plans[i] = planOf(clips[i], plans[i].rate_hz * share);
+                        " % of their frames are kept");
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    if (plans[i].frames > 0) plans[i] = planOf(clips[i], plans[i].rate_hz * share);
+  }
   return plans;
 }
 
@@ -198,10 +203,7 @@ void readGltfMotions(const GltfDocument& document, const GltfScene& scene, const
   const std::vector<Plan> plans = planMotions(clips, above.size(), model);
   std::map<std::string, int> names;
   for (std::size_t i = 0; i < clips.size(); ++i) {
-    if (plans[i].frames > 2 && plans[i].rate_hz < kSlowest_hz) {
-      model.notes.push_back("the motion " + jsonText(clips[i].name) + " is too long: left out");
-      continue;
-    }
+    if (plans[i].frames == 0) continue;
     ClipPlayer player(scene, rig, model, above, clips[i]);
     SampledMotion motion = play(player, clips[i], plans[i], model);
     const int number = ++names[motion.name];
