@@ -198,6 +198,8 @@ HWY_INLINE void forEachTriangle(const SelfContactModel& m, std::size_t group, co
   const D d;
   const SelfContactModel::Group g = m.groups[group];
   const V3 low = all(reach.low), high = all(reach.high), axis = all(reach.axis);
+  const V3 middle = scaled(hn::Set(d, 0.5f), low + high), half = high - middle;
+  const V ahead = hn::Set(d, reach.ahead_m), depthScale = hn::Set(d, reach.depthScale);
   const auto meets = [](V lowest, V highest, V center, V radius) HWY_ATTR {
     return hn::And(hn::Le(hn::Sub(center, radius), highest),
                    hn::Ge(hn::Add(center, radius), lowest));
@@ -205,15 +207,20 @@ HWY_INLINE void forEachTriangle(const SelfContactModel& m, std::size_t group, co
   for (std::size_t t = g.first; t < g.first + g.count; t += hn::Lanes(d)) {
     const auto at = static_cast<std::ptrdiff_t>(t);
     const V3 c = pointers(f.center).at(at);
-    const V behind = hn::Mul(hn::Set(d, reach.depthScale), hn::LoadU(d, m.depth_m.data() + t));
-    const V r =
-        hn::Add(hn::LoadU(d, f.radius.data() + t), hn::Max(hn::Set(d, reach.ahead_m), behind));
-    const V toAxis =
-        hn::Mul(dot(pointers(f.areaNormal).at(at), axis), hn::LoadU(d, f.inverseLength.data() + t));
-    const Mask mask = hn::And(
-        hn::And(meets(low.x, high.x, c.x, r), meets(low.y, high.y, c.y, r)),
-        hn::And(meets(low.z, high.z, c.z, r), hn::Le(toAxis, hn::Set(d, reach.cosineNever))));
-    forEachLane(mask, ~0u, [&](std::size_t i) HWY_ATTR { visit(t + i); });
+    const V3 normal =
+        scaled(hn::LoadU(d, f.inverseLength.data() + t), pointers(f.areaNormal).at(at));
+    const V behind = hn::Mul(depthScale, hn::LoadU(d, m.depth_m.data() + t));
+    const V r = hn::Add(hn::LoadU(d, f.radius.data() + t), hn::Max(ahead, behind));
+    // The box above and below the triangle's plane.
+    const V height = dot(middle - c, normal);
+    const V extent = dot(half, {hn::Abs(normal.x), hn::Abs(normal.y), hn::Abs(normal.z)});
+    const Mask inSlab = hn::And(hn::Le(hn::Sub(height, extent), ahead),
+                                hn::Ge(hn::Add(height, extent), hn::Neg(behind)));
+    const Mask inBox = hn::And(hn::And(meets(low.x, high.x, c.x, r), meets(low.y, high.y, c.y, r)),
+                               meets(low.z, high.z, c.z, r));
+    const Mask mayFace = hn::Le(dot(normal, axis), hn::Set(d, reach.cosineNever));
+    forEachLane(hn::And(inBox, hn::And(inSlab, mayFace)), ~0u,
+                [&](std::size_t i) HWY_ATTR { visit(t + i); });
   }
 }
 

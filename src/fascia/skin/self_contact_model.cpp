@@ -136,6 +136,7 @@ class Preparation {
     mesh.triangles.assign(triangles_.begin(), triangles_.end());
     computeNormals(mesh.positions, mesh.triangles, mesh.normals);
     meanEdge_m_ = meanEdgeLength();
+    model_.gap_m = std::min(model_.gap_m, meanEdge_m_);
     std::erase_if(tested_, [&](std::uint32_t k) { return neighbors_[k].empty(); });
     split(tested_);
   }
@@ -314,6 +315,7 @@ class Preparation {
     PointLanes lanes;
     for (std::size_t p = 0; p < model_.patches.size(); ++p)
       search.search(p, query, lanes, [&](std::uint32_t group, const Touch& touch) {
+        if (touch.distance_m >= model_.gap_m) return;
         const bool crosses = touch.distance_m < kCrossing * model_.gap_m;
         lists[static_cast<std::size_t>(model_.patches[p].points[touch.lane])].push_back(
             {group, crosses ? kLeaveAlone : (1 - kRestSlack) * touch.distance_m});
