@@ -18,7 +18,7 @@ namespace {
 // with the weights found. More frames hardly change the weights, but cost time in proportion.
 constexpr std::size_t kMostFittedFrames = 90;
 // Another round that lowers the error by less than this share is not worth its time.
-constexpr double kLeastGain = 2e-3;
+constexpr double kLeastGain = 5e-4;
 // Of the model's size: below this, an error is that of the single-precision input.
 constexpr double kNoError = 1e-7;
 // Helpers that carry fewer points than this are moved to where they are needed.

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/baking/morph_basis.h>
+#include <fascia/baking/skinning_decomposition.h>
+#include <fascia/character/recording.h>
+#include <fascia/rig/rigged_model.h>
+
+namespace fascia {
+
+// A simulated motion of an imported character, to be written back into the file that it came from.
+struct RigClip {
+  const RiggedModel& model;    // its sourceFile must be a glTF, unchanged since it was read
+  const Recording& recording;  // skin_m: model.vertices, in their order
+  // Frame by frame, per joint of the model: the world frames that the skin was simulated with.
+  const std::vector<std::vector<Transform>>& joints_world;
+  std::string motion;  // name of the animation: an old one of this name is replaced
+  double scale = 1;    // that the model was read with (RigDef::scale)
+};
+
+// How far the written file, read back and played, is from the simulation: all vertices, all frames.
+struct BakeError {
+  double rms_mm = 0, max_mm = 0;
+};
+
+struct RigBakeReport {
+  BakeError error;
+  std::size_t added = 0;           // helper bones or morph targets
+  std::vector<std::string> files;  // written
+};
+
+// Each writes a whole GLB or nothing, and throws Error. Everything of the source file that is not
+// about the baked motion survives: names, joints, materials, pictures, extensions, extras, other
+// meshes and other animations.
+
+// Helper bones below the rig's joints and new weights: plays in every engine.
+RigBakeReport writeRigAsBones(const RigClip& clip, const DecompositionOptions& options,
+                              const std::string& path);
+
+// Morph targets on top of the rig's own skinning, after those that the file has.
+RigBakeReport writeRigAsMorphs(const RigClip& clip, const MorphOptions& options,
+                               const std::string& path);
+
+// The rest surface without a skeleton as a GLB, and for every mesh a point cache of all frames in
+// two formats beside it: "fox.glb" gets "fox.pc2" and "fox.mdd", with the mesh' name in between if
+// there are several.
+RigBakeReport writeRigAsCache(const RigClip& clip, const std::string& path);
+
+}  // namespace fascia
