@@ -150,8 +150,8 @@ void flesh(const FleshOptions& options, const Console& console) {
   const RiggedModel model = readRiggedModel(options.input, {options.scale});
   FleshFit fit = fitFlesh(model, options.fit);
   sayTable(fit, console);
-  for (const auto* notes : {&model.notes, &fit.notes}) {
-    for (const std::string& note : *notes) console.say("note: " + note);
+  for (const auto& notes : {model.notes, fit.notes}) {
+    for (const std::string& note : notes) console.say("note: " + note);
   }
   const Json report = reportJson(model, fit);
   if (!options.report.empty()) writeFileWhole(options.report, printJson(report));

@@ -22,6 +22,11 @@ RiggedModel armPair() {
   return model;
 }
 
+const FleshFit& armPairFit() {
+  static const FleshFit fit = fitFlesh(armPair());
+  return fit;
+}
+
 const JointFit& of(const FleshFit& fit, const std::string& joint) {
   for (const JointFit& one : fit.joints) {
     if (one.joint == joint) return one;
@@ -30,7 +35,7 @@ const JointFit& of(const FleshFit& fit, const std::string& joint) {
 }
 
 TEST(FitFlesh, FillsEveryPartAndStaysInside) {
-  const FleshFit fit = fitFlesh(armPair());
+  const FleshFit& fit = armPairFit();
   EXPECT_EQ(fit.joints.size(), 7u);
   for (const char* joint : {"chest", "upper_arm.L", "forearm.L", "upper_arm.R", "forearm.R"}) {
     EXPECT_FALSE(of(fit, joint).solids.empty()) << joint;
@@ -104,7 +109,7 @@ TEST(FitFlesh, PutsFlexorsWhereTheElbowBendsToAndLetsThemSwell) {
 }
 
 TEST(FitFlesh, SaysWhyAJointHasNone) {
-  const FleshFit fit = fitFlesh(armPair());
+  const FleshFit& fit = armPairFit();
   EXPECT_TRUE(of(fit, "hand.L").solids.empty());
   EXPECT_EQ(of(fit, "hand.L").points, 0u);
   EXPECT_NE(of(fit, "hand.L").why.find("no skin"), std::string::npos);
@@ -112,7 +117,7 @@ TEST(FitFlesh, SaysWhyAJointHasNone) {
 }
 
 TEST(FitFlesh, MirrorImagesGetMirrorImages) {
-  const FleshFit fit = fitFlesh(armPair());
+  const FleshFit& fit = armPairFit();
   Diagnostics diagnostics;
   const Skeleton skeleton(fit.skeleton, "", diagnostics);
   const Flesh flesh(fit.flesh, skeleton, "", diagnostics);
