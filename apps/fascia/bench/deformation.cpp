@@ -143,8 +143,8 @@ class Contest {
     const double turn_deg = degrees(hinge.turnFor_rad(radians(angle_deg)));
     console_.say(
         fmt::format("\n{} bent to {:.0f}° (turned by {:.0f}°)", joint, angle_deg, turn_deg));
-    console_.say(fmt::format("{}  volume", kHeadings));
-    console_.say(fmt::format("{}  lost (%)", kColumns));
+    console_.say(fmt::format("{}  volume lost (%)", kHeadings));
+    console_.say(fmt::format("{}    total at rest", kColumns));
     const Stage stage = makeStage(model_, bendMotion(model_, hinge, radians(angle_deg)), 2);
     std::optional<BendPictures> pictures;
     if (!options_.pictures.empty()) pictures.emplace(model_, hinge);
@@ -153,12 +153,13 @@ class Contest {
       const Performance performance = contender->perform(stage, console_);
       const BendScore score = judge_.judgeBend(hinge, stage, performance);
       console_.say(
-          fmt::format("{} {:8.1f}",
+          fmt::format("{} {:8.1f} {:7.1f}",
                       commonColumns(contender->name(), score.crossings, score.stretch, score.slide),
-                      100 * score.volume_loss));
+                      100 * score.volume_loss, 100 * score.loss_at_rest));
       Json row = toJson(score.stretch, score.slide, score.crossings);
       row.set("method", contender->name());
       row.set("volume_loss", score.volume_loss);
+      row.set("volume_loss_at_rest", score.loss_at_rest);
       rows.push_back(std::move(row));
       if (pictures) pictures->add(renderer(), performance.frames.back());
     }

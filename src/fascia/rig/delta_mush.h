@@ -5,8 +5,9 @@
 namespace fascia {
 
 struct DeltaMushOptions {
-  int iterations = 20;  // of Laplacian smoothing; more smooth over wider joints
-  float step = 0.5f;    // (0, 1], towards the mean of the neighbours
+  int iterations =
+      10;             // of Laplacian smoothing; more round wider joints, and thin out coarse limbs
+  float step = 0.5f;  // (0, 1], towards the mean of the neighbours
 };
 
 // Delta mush (Mancewicz, Derksen, Rijpkema & Wilson 2014): smooths what linear blending gives, then

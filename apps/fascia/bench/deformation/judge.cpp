@@ -31,6 +31,8 @@ BendScore Judge::judgeBend(const Hinge& hinge, const Stage& stage,
   const PointList rest = model_.points_m, now = performance.frames.back();
   BendScore score;
   score.volume_loss = jointVolumeLoss(region.limb, region.nearJoint, rest, now);
+  score.loss_at_rest =
+      jointVolumeLoss(region.limb, region.nearJoint, rest, performance.frames.front());
   score.crossings = newCrossings(restCrossings_, findCrossings(model_.triangles, now));
   score.stretch = edgeStretch(region.nearJoint, rest, now);
   score.slide =

@@ -10,6 +10,7 @@ namespace fascia {
 // What there is to say about a bent joint.
 struct BendScore {
   double volume_loss = 0;     // share of the joint's volume
+  double loss_at_rest = 0;    // … of that, before it bends: what the skin's own rest loses
   std::size_t crossings = 0;  // pairs of triangles; without those of the bind pose
   EdgeStretch stretch;        // near the joint
   SkinSlide slide;            // near the joint

@@ -47,7 +47,7 @@ Camera BendPictures::camera(const std::vector<Eigen::Vector3f>& points) const {
   const Vec3 from = hinge_.axis.dot(outside) < 0 ? Vec3(-hinge_.axis) : hinge_.axis;
   Camera camera;
   camera.target_m = mean;
-  const double distance_m = 1.25 * reach_m / std::tan(0.5 * camera.vertical_fov_rad);
+  const double distance_m = 1.5 * reach_m / std::tan(0.5 * camera.vertical_fov_rad);
   camera.eye_m = mean + distance_m * from;
   if (std::abs(from.y()) > 0.8) camera.up = -Vec3::UnitZ();
   return camera;
