@@ -11,8 +11,16 @@ void Console::addFlags(CLI::App& command) {
   command.add_flag("-q,--quiet", quiet_, "Say nothing unless something is wrong");
 }
 
+void Console::addVerboseFlag(CLI::App& command) {
+  command.add_flag("-v,--verbose", verbose_, "Tell more");
+}
+
 void Console::say(const std::string& line) const {
   if (!json_ && !quiet_) fmt::print("{}\n", line);
+}
+
+void Console::detail(const std::string& text) const {
+  if (verbose_) say(text);
 }
 
 void Console::hint(const std::string& line) const {

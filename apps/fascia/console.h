@@ -16,12 +16,14 @@ namespace fascia {
 // Errors and hints go to stderr either way.
 class Console {
  public:
-  void addFlags(CLI::App& command);  // --json, --quiet
+  void addFlags(CLI::App& command);        // --json, --quiet
+  void addVerboseFlag(CLI::App& command);  // --verbose, where there is more to tell
 
-  void say(const std::string& line) const;   // stdout; not with --json or --quiet
-  void hint(const std::string& line) const;  // stderr; not with --quiet
-  void answer(const Json& document) const;   // stdout; only with --json
-  void fail(const Error& error) const;       // every issue a line on stderr; JSON with --json
+  void say(const std::string& line) const;     // stdout; not with --json or --quiet
+  void detail(const std::string& text) const;  // stdout; only with --verbose
+  void hint(const std::string& line) const;    // stderr; not with --quiet
+  void answer(const Json& document) const;     // stdout; only with --json
+  void fail(const Error& error) const;         // every issue a line on stderr; JSON with --json
 
   // Whether a moving progress bar makes sense: someone is watching, and wants text.
   bool showsProgress() const;
@@ -29,6 +31,7 @@ class Console {
  private:
   bool json_ = false;
   bool quiet_ = false;
+  bool verbose_ = false;
 };
 
 // [{"file", "line", "pointer", "message", "hint"}, …], empty parts left out.

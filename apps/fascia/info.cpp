@@ -4,12 +4,14 @@
 #include <fascia/base/parallel.h>
 #include <fascia/io/cache.h>
 #include <fascia/io/character_file.h>
-#include <fascia/io/file.h>
+#include <fascia/io/rig_import.h>
 #include <fascia/math/ode/integrators.h>
 #include <fascia/render/gl_context.h>
 
 #include "commands.h"
 #include "console.h"
+#include "motion_file.h"
+#include "outputs.h"
 
 namespace fascia {
 namespace {
@@ -17,12 +19,19 @@ namespace {
 constexpr const char* kFooter =
     R"(Without a file: about the program and this machine, for a bug report.
 
+With --motion FILE.bvh: how the joints of a motion capture file would drive the rig's; the lines are
+a joint map to edit and give back with --joint-map.
+
 Examples:
   fascia info
   fascia info examples/penguin.fascia.json
+  fascia info fox.glb
+  fascia info human.fascia.json --motion walk.bvh
   fascia info penguin.fcache --json)";
 
-constexpr std::size_t kMaxFileBytes = std::size_t{1} << 32;
+struct InfoOptions {
+  std::string file, motion, joint_map;
+};
 
 // What there is to tell: lines for a person, an object for a machine.
 class Facts {
@@ -35,6 +44,11 @@ class Facts {
   }
   void add(const std::string& name, Json value, const std::vector<std::string>& texts) {
     for (const std::string& text : texts) lines_.push_back(fmt::format("{:13}  {}", name, text));
+    answer_.set(name, std::move(value));
+  }
+
+  void addLines(const std::string& name, Json value, const std::string& lines) {
+    lines_.push_back(lines);
     answer_.set(name, std::move(value));
   }
 
@@ -52,6 +66,51 @@ int count(std::size_t n) {
   return static_cast<int>(n);
 }
 
+std::string motionText(const std::string& name, double duration_s, bool loop) {
+  return fmt::format("{}, {:.4g} s{}", name, duration_s, loop ? ", loops" : "");
+}
+
+// What an imported file holds. Its motions are told with the character's, or by addRigMotions.
+void addRig(const RiggedModel& rig, Facts& facts) {
+  facts.add("rig", rig.sourceFile);
+  facts.add("rig_joints", count(rig.joints.size()));
+  facts.add("rig_points", count(rig.points_m.size()));
+  facts.add("rig_triangles", count(rig.triangles.size()));
+  facts.add("rig_pieces", static_cast<int>(rig.componentCount));
+  facts.add("rig_height_m", rig.height_m());
+  Json::List parts, materials, notes;
+  std::vector<std::string> partTexts, materialTexts;
+  for (const RigPart& part : rig.parts) {
+    const auto m = static_cast<std::size_t>(part.material);
+    const std::string material = part.material < 0 ? "" : rig.materials[m].name;
+    parts.push_back(Json::Object{{"name", part.name},
+                                 {"material", material},
+                                 {"triangles", static_cast<int>(part.triangleCount)}});
+    partTexts.push_back(fmt::format("{}, {} triangles{}{}", part.name, part.triangleCount,
+                                    material.empty() ? "" : " of ", material));
+  }
+  for (const RigMaterial& material : rig.materials) {
+    materials.push_back(
+        Json::Object{{"name", material.name}, {"textured", !material.texture.empty()}});
+    materialTexts.push_back(material.name + (material.texture.empty() ? "" : ", textured"));
+  }
+  for (const std::string& note : rig.notes) notes.push_back(note);
+  facts.add("rig_parts", std::move(parts), partTexts);
+  facts.add("rig_materials", std::move(materials), materialTexts);
+  facts.add("rig_notes", std::move(notes), rig.notes);
+}
+
+void addRigMotions(const RiggedModel& rig, Facts& facts) {
+  Json::List motions;
+  std::vector<std::string> texts;
+  for (const SampledMotion& motion : rig.motions) {
+    motions.push_back(Json::Object{
+        {"name", motion.name}, {"duration_s", motion.duration_s()}, {"loop", motion.loop}});
+    texts.push_back(motionText(motion.name, motion.duration_s(), motion.loop));
+  }
+  facts.add("motions", std::move(motions), texts);
+}
+
 void addCharacter(const Character& character, Facts& facts) {
   const CharacterDef& def = character.def();
   facts.add("name", def.name);
@@ -61,10 +120,13 @@ void addCharacter(const Character& character, Facts& facts) {
   facts.add("solids", count(character.flesh().solidCount()));
   facts.add("ornaments", count(character.ornaments().solidCount()));
   if (const Skin* skin = character.skin()) {
-    facts.add("skin_columns", skin->columns());
-    facts.add("skin_rows", skin->rows());
+    if (skin->isGrid()) {
+      facts.add("skin_columns", skin->columns());
+      facts.add("skin_rows", skin->rows());
+    }
     facts.add("skin_points", count(skin->pointCount()));
   }
+  if (def.rig && def.rig->model) addRig(*def.rig->model, facts);
   facts.add("integrator", def.simulation.integrator);
   facts.add("frame_rate_hz", def.simulation.frame_rate_hz);
   Json::List motions;
@@ -73,8 +135,7 @@ void addCharacter(const Character& character, Facts& facts) {
     const BoundClip& motion = character.motion(i);
     motions.push_back(Json::Object{
         {"name", motion.name}, {"duration_s", motion.duration_s}, {"loop", motion.loop}});
-    texts.push_back(
-        fmt::format("{}, {:g} s{}", motion.name, motion.duration_s, motion.loop ? ", loops" : ""));
+    texts.push_back(motionText(motion.name, motion.duration_s, motion.loop));
   }
   facts.add("motions", std::move(motions), texts);
 }
@@ -88,11 +149,44 @@ void addRecording(const Recording& recording, Facts& facts) {
   facts.add("state_hash", fmt::format("{:016x}", recording.state_hash));
 }
 
-void describeFile(const std::string& path, Facts& facts) {
-  const std::string bytes = readFile(path, kMaxFileBytes);
-  facts.add("file", path);
-  if (!isCache(bytes)) return addCharacter(loadCharacter(path), facts);
-  const Cache cache = parseCache(bytes, path);
+bool isCharacter(const std::string& path) {
+  return endingOf(path) == ".json";
+}
+
+// How a motion capture file fits a character's or a bare file's rig.
+void describeMap(const InfoOptions& options, Facts& facts) {
+  std::shared_ptr<const RiggedModel> rig;
+  if (isCharacter(options.file)) {
+    const CharacterDef def = readCharacterFile(options.file).def;
+    if (def.rig) rig = def.rig->model;
+  } else {
+    rig = std::make_shared<const RiggedModel>(readRiggedModel(options.file));
+  }
+  if (!rig) throw Error("'" + options.file + "' has no rig that a motion could drive");
+  MotionFile motion = readMotionFile(options.motion, *rig, options.joint_map);
+  const SampledMotion mapped = ontoRig(motion, *rig);
+  facts.add("motion", motionText(mapped.name, mapped.duration_s(), mapped.loop));
+  facts.add("joints", count(motion.figure.joints.size()));
+  facts.add("unit", motion.unit);
+  Json::List pairs, notes;
+  for (const JointPair& pair : motion.map)
+    pairs.push_back(
+        Json::Object{{"source", pair.source}, {"target", pair.target}, {"why", pair.why}});
+  for (const std::string& note : motion.notes) notes.push_back(note);
+  facts.add("notes", std::move(notes), motion.notes);
+  facts.addLines("joint_map", std::move(pairs), printJointMap(motion.map));
+}
+
+void describeFile(const InfoOptions& options, Facts& facts) {
+  facts.add("file", options.file);
+  if (!options.motion.empty()) return describeMap(options, facts);
+  if (isCharacter(options.file)) return addCharacter(loadCharacter(options.file), facts);
+  if (endingOf(options.file) != ".fcache") {
+    const RiggedModel rig = readRiggedModel(options.file);
+    addRig(rig, facts);
+    return addRigMotions(rig, facts);
+  }
+  const Cache cache = readCache(options.file);
   addCharacter(Character(cache.def), facts);
   addRecording(cache.recording, facts);
 }
@@ -119,12 +213,12 @@ void describeProgram(Facts& facts) {
   facts.add("integrators", std::move(methods), texts);
 }
 
-void info(const std::string& path, const Console& console) {
+void info(const InfoOptions& options, const Console& console) {
   Facts facts;
-  if (path.empty())
+  if (options.file.empty())
     describeProgram(facts);
   else
-    describeFile(path, facts);
+    describeFile(options, facts);
   facts.show(console);
 }
 
@@ -133,11 +227,22 @@ void info(const std::string& path, const Console& console) {
 void addInfo(CLI::App& program, Console& console) {
   CLI::App& command =
       *program.add_subcommand("info", "Tell what is in a file, or about the program");
-  const auto path = std::make_shared<std::string>();
-  command.add_option("FILE", *path, "A *.fascia.json or *.fcache file")->type_name("");
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::Option* file = command.add_option("FILE", options->file,
+                                         "A *.fascia.json or *.fcache file, or a rig: .glb, .gltf");
+  file->type_name("");
+  command
+      .add_option("--motion", options->motion,
+                  "Show how this .bvh file's joints would drive the rig's")
+      ->type_name("FILE")
+      ->check(endsIn({".bvh", ".gz"}))
+      ->needs(file);
+  command
+      .add_option("--joint-map", options->joint_map, "Pairs of joints that win over the guesses")
+      ->type_name("FILE");
   console.addFlags(command);
   command.footer(kFooter);
-  command.callback([path, &console] { info(*path, console); });
+  command.callback([options, &console] { info(*options, console); });
 }
 
 }  // namespace fascia

@@ -47,7 +47,7 @@ void checkFolders(const std::vector<std::string>& paths) {
 }
 
 void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
-                     const Console& console) {
+                     const Console& console, const Json::Object& more) {
   const double ratio = recording.wall_s > 0 ? recording.simulated_s / recording.wall_s : 0;
   console.say(
       fmt::format("{} frames, {} vertices: simulated {:.4g} s in {:.2g} s ({:.0f} × real time)",
@@ -57,7 +57,9 @@ void reportRecording(const Recording& recording, const std::vector<std::string>&
   for (const std::string& path : outputs) written.push_back(path);
   std::vector<Issue> issues;
   Json stats = parseJson(statsJson(recording), JsonLimits{}, issues);
-  console.answer(Json::Object{{"ok", true}, {"outputs", written}, {"stats", std::move(stats)}});
+  Json answer = Json::Object{{"ok", true}, {"outputs", written}, {"stats", std::move(stats)}};
+  for (const Json::Member& member : more) answer.set(member.key, member.value);
+  console.answer(answer);
 }
 
 }  // namespace fascia

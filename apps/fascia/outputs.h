@@ -19,8 +19,9 @@ std::function<std::string(const std::string&)> endsIn(const std::vector<std::str
 // are skipped.
 void checkFolders(const std::vector<std::string>& paths);
 
-// A line about the simulation for a person, the whole statistics for a machine.
+// A line about the simulation for a person, the whole statistics for a machine; `more` joins the
+// machine's answer.
 void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
-                     const Console& console);
+                     const Console& console, const Json::Object& more = {});
 
 }  // namespace fascia

@@ -13,6 +13,12 @@ namespace {
 constexpr int kReachSamples =
     60;  // a swing's turning point is missed by less than 1 % of the swing
 
+constexpr double kOffTheFloor = 0.04;  // of the height: feet farther from 0 have a floor elsewhere
+
+bool hasRig(const Character& character) {
+  return character.def().rig && character.def().rig->model;
+}
+
 const Recording::Frame& frameAt(const Recording& recording, double time_s) {
   const std::vector<Recording::Frame>& frames = recording.frames;
   if (frames.empty()) throw Error("there are no frames to draw");
@@ -33,28 +39,52 @@ Player::Player(const Character& character, const Recording& recording)
       recording_(recording),
       motion_(recording.motion.empty() ? -1 : character.findMotion(recording.motion)),
       skin_(recording.skin),
-      normals_(recording.skin) {}
+      normals_(recording.skin) {
+  if (!hasRig(character)) return;
+  creases_.emplace(*character.def().rig->model);
+  blended_.emplace(character);
+}
 
 void Player::seek(double time_s) {
   const Recording::Frame& frame = frameAt(recording_, time_s);
   state_.time_s = frame.time_s;
   poseLayers(character_, motion_, false, state_);
   skin_.positions = frame.skin_m;
+  if (creases_) {
+    if (frame.skin_m.empty()) blended_->compute(state_, skin_.positions);
+    creases_->compute(skin_.positions, skin_.normals);
+    return;
+  }
   normals_.compute(skin_.positions, skin_.normals);
 }
 
 Box motionReach(const Character& character, int motion) {
   const double duration_s =
       motion < 0 ? 0 : character.motion(static_cast<std::size_t>(motion)).duration_s;
-  const Layers all{true, true, true};
+  // An imported rig's joints are no measure: handles and targets lie anywhere.
+  const Layers layers{!hasRig(character), true, true};
+  std::optional<BlendedSkin> blended;
+  if (hasRig(character)) blended.emplace(character);
   CharacterState state;
+  TriangleMesh surface;
   Box box;
   for (int i = 0; i <= kReachSamples; ++i) {
     state.time_s = duration_s * i / kReachSamples;
     poseLayers(character, motion, false, state);
-    box.add(visibleBounds(state, {}, all));
+    if (blended) blended->compute(state, surface.positions);
+    box.add(visibleBounds(state, surface, layers));
   }
   return box;
+}
+
+double floorHeight(const Character& character, const Box& reach) {
+  if (!hasRig(character) || reach.empty()) return 0;
+  Box rest;
+  for (const Eigen::Vector3f& p : character.def().rig->model->points_m) rest.add(p.cast<double>());
+  if (rest.empty()) return 0;
+  const double tolerance_m = kOffTheFloor * rest.size().maxCoeff();
+  const double feet_m = std::abs(rest.low.y()) < tolerance_m ? 0 : rest.low.y();
+  return reach.low.y() < feet_m - tolerance_m ? reach.low.y() : feet_m;
 }
 
 }  // namespace fascia

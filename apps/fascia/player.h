@@ -1,8 +1,12 @@
 #pragma once
 
+#include <optional>
+
 #include <fascia/character/character.h>
 #include <fascia/character/recording.h>
 #include <fascia/io/welded_normals.h>
+#include <fascia/render/blended_skin.h>
+#include <fascia/render/crease_normals.h>
 
 namespace fascia {
 
@@ -25,11 +29,18 @@ class Player {
   CharacterState state_;
   TriangleMesh skin_;
   WeldedNormals normals_;
+  // Of an imported character: its own normals, and its own skinning where nothing was simulated.
+  std::optional<CreaseNormals> creases_;
+  std::optional<BlendedSkin> blended_;
 };
 
-// Everything that flesh and ornaments reach in the course of a motion (-1: the rest posture). It
-// does not depend on what part of it is simulated: a camera that frames it shows a picture, a video
-// and a cache from the same place.
+// Everything that flesh, ornaments and an imported surface reach in the course of a motion (-1: the
+// rest posture). It does not depend on what part of it is simulated: a camera that frames it shows
+// a picture, a video and a cache from the same place.
 Box motionReach(const Character& character, int motion);
+
+// Where the floor belongs: at 0, or below what stands or moves deeper, or under an imported
+// character whose file has its feet elsewhere.
+double floorHeight(const Character& character, const Box& reach);
 
 }  // namespace fascia

@@ -3,7 +3,6 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/io/cache.h>
-#include <fascia/io/character_file.h>
 #include <fascia/io/image.h>
 #include <fascia/io/stats_writer.h>
 #include <fascia/io/texture.h>
@@ -50,8 +49,8 @@ struct Footage {
   Texture texture;
 };
 
-Footage simulateFootage(const RenderOptions& options, const Console& console) {
-  Character character = loadCharacter(options.input, options.simulation.buildOptions());
+Footage simulateFootage(RenderOptions& options, const Console& console) {
+  Character character = prepareCharacter(options.input, options.simulation, console);
   RecordOptions record = options.simulation.recordOptions(character);
   if (!options.video()) {  // as far as that moment, and keep only its frame
     const double rate_hz =
@@ -64,7 +63,7 @@ Footage simulateFootage(const RenderOptions& options, const Console& console) {
   return {std::move(character), std::move(recording), std::move(texture)};
 }
 
-Footage loadFootage(const RenderOptions& options, const Console& console) {
+Footage loadFootage(RenderOptions& options, const Console& console) {
   if (endingOf(options.input) != ".fcache") return simulateFootage(options, console);
   Cache cache = readCache(options.input);
   return {Character(cache.def), std::move(cache.recording), std::move(cache.texture)};
@@ -76,10 +75,28 @@ std::shared_ptr<const Pixels> toPixels(const Texture& texture) {
   return std::make_shared<const Pixels>(Pixels{image.width, image.height, std::move(image.rgba)});
 }
 
+// The decoded pictures of an imported character's materials. One that cannot be read is left out,
+// and named: the rest of the character is still worth seeing.
+std::shared_ptr<const RigSurface> rigSurface(const Character& character, const Console& console) {
+  if (!character.def().rig || !character.def().rig->model) return nullptr;
+  const std::shared_ptr<const RiggedModel> model = character.def().rig->model;
+  std::vector<std::shared_ptr<const Pixels>> textures;
+  for (const RigMaterial& material : model->materials) {
+    try {
+      textures.push_back(toPixels({std::string(material.texture.begin(), material.texture.end())}));
+    } catch (const Error& error) {
+      textures.push_back(nullptr);
+      console.hint(fmt::format("the picture of the material '{}' is left out: {}", material.name,
+                               error.what()));
+    }
+  }
+  return std::make_shared<const RigSurface>(model, std::move(textures));
+}
+
 // Draws moments of a footage, all from the same camera.
 class Shooting {
  public:
-  Shooting(const Footage& footage, const RenderOptions& options)
+  Shooting(const Footage& footage, const RenderOptions& options, const Console& console)
       : footage_(footage),
         player_(footage.character, footage.recording),
         size_(parseSize(options.size)) {
@@ -88,8 +105,10 @@ class Shooting {
     options_.camera = parseCamera(options.camera);
     options_.aspect = static_cast<double>(size_.width) / size_.height;
     options_.skin_texture = toPixels(footage.texture);
+    options_.rig_surface = rigSurface(footage.character, console);
     options_.framing =
         motionReach(footage.character, motion.empty() ? -1 : footage.character.findMotion(motion));
+    options_.ground_height_m = floorHeight(footage.character, options_.framing);
   }
 
   const Image& at(double time_s) {
@@ -115,7 +134,7 @@ class Shooting {
 };
 
 void shootVideo(const Footage& footage, const RenderOptions& options, const Console& console) {
-  Shooting shooting(footage, options);
+  Shooting shooting(footage, options, console);
   const double start_s = footage.recording.frames.front().time_s;
   const double length_s = footage.recording.frames.back().time_s - start_s;
   const int frames = std::max(1, static_cast<int>(std::lround(length_s * options.frame_rate_hz)));
@@ -130,7 +149,7 @@ void shootVideo(const Footage& footage, const RenderOptions& options, const Cons
   if (!video.hint().empty()) console.hint(video.hint());
 }
 
-void render(const RenderOptions& options, const Console& console) {
+void render(RenderOptions& options, const Console& console) {
   checkFolders({options.output, options.stats});
   const ThreadLimit threads(options.simulation.threads);
   const Footage footage = loadFootage(options, console);
@@ -138,7 +157,7 @@ void render(const RenderOptions& options, const Console& console) {
   if (options.video())
     shootVideo(footage, options, console);
   else
-    writePng(Shooting(footage, options).at(options.time_s), options.output);
+    writePng(Shooting(footage, options, console).at(options.time_s), options.output);
   if (!options.stats.empty()) writeStats(footage.recording, options.stats);
   console.say("wrote " + options.output);
   reportRecording(footage.recording, {options.output}, console);
@@ -192,6 +211,7 @@ void addRender(CLI::App& program, Console& console) {
       ->type_name("FILE");
   options->simulation.addTo(command);
   console.addFlags(command);
+  console.addVerboseFlag(command);
   command.footer(kFooter);
   command.callback([options, &console] { render(*options, console); });
 }

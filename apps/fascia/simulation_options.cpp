@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <fascia/base/suggest.h>
+#include <fascia/io/character_file.h>
 #include <fascia/math/ode/integrators.h>
 
 #include "interrupt.h"
+#include "motion_file.h"
 #include "progress.h"
 
 namespace fascia {
@@ -27,8 +30,14 @@ std::vector<std::string> integratorNames() {
 }  // namespace
 
 void SimulationOptions::addTo(CLI::App& command) {
-  command.add_option("--motion", motion, "Motion to simulate (default: the first)")
+  command
+      .add_option("--motion", motion,
+                  "Motion to simulate (default: the first); a .bvh file is put onto the rig")
       ->type_name("NAME");
+  command
+      .add_option("--joint-map", joint_map,
+                  "Which of the .bvh file's joints drive which of the rig's (default: guessed)")
+      ->type_name("FILE");
   command.add_option("--duration", duration_s, "How long to simulate (default: the motion's)")
       ->type_name("SECONDS")
       ->check(numberIn(1e-3, 86400));
@@ -82,13 +91,33 @@ std::string sizeProblem(const std::string& text, int low, int high) {
          std::to_string(high) + "]";
 }
 
+Character prepareCharacter(const std::string& path, SimulationOptions& options,
+                           const Console& console) {
+  CharacterFile file = readCharacterFile(path);
+  if (isMotionFile(options.motion)) {
+    if (!file.def.rig)
+      throw Error("the motion '" + options.motion + "' needs a character with a rig");
+    RiggedModel model = *file.def.rig->model;
+    MotionFile motion = readMotionFile(options.motion, model, options.joint_map);
+    model.motions.push_back(ontoRig(motion, model));
+    reportMap(motion, model, console);
+    options.motion = model.motions.back().name;
+    file.def.rig->model = std::make_shared<const RiggedModel>(std::move(model));
+  }
+  return buildCharacter(file, options.buildOptions());
+}
+
 int chooseMotion(const Character& character, const std::string& name) {
   const int motion = character.findMotion(name);
   if (motion >= 0 || name.empty()) return motion;
-  std::string known;
+  std::vector<std::string> known;
   for (std::size_t i = 0; i < character.motionCount(); ++i)
-    known += (i > 0 ? ", " : "") + character.motion(i).name;
-  throw Error("no motion is named '" + name + "'; there are: " + known);
+    known.push_back(character.motion(i).name);
+  Issue issue;
+  issue.message = fmt::format("no motion is named {}; there are: {}", fascia::quoted(name),
+                              known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")));
+  issue.hint = didYouMean(name, known);
+  throw Error(std::move(issue));
 }
 
 Recording simulate(const Character& character, RecordOptions options, const Console& console) {

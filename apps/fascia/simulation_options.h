@@ -13,7 +13,8 @@ namespace fascia {
 
 // What a person may say about a simulation without touching the character's file.
 struct SimulationOptions {
-  std::string motion;        // name; empty = the character's first
+  std::string motion;        // name; empty = the character's first; or a file (see motion_file.h)
+  std::string joint_map;     // a file for the latter; empty = guessed
   double frame_rate_hz = 0;  // 0 = as in the file
   double duration_s = 0;     // 0 = the motion's
   std::string integrator;    // empty = as in the file
@@ -36,6 +37,11 @@ std::string sizeProblem(const std::string& text, int low, int high);
 
 // A CLI11 check whose range stays out of the help.
 CLI::Validator numberIn(double low, double high);
+
+// Reads and builds a character for these options. A motion capture file among them is put onto its
+// rig first; they then name the motion that came of it.
+Character prepareCharacter(const std::string& path, SimulationOptions& options,
+                           const Console& console);
 
 // The index of the motion to use; -1 = the character has none. Throws for an unknown name.
 int chooseMotion(const Character& character, const std::string& name);

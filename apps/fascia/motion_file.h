@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fascia/rig/joint_map.h>
+#include <fascia/rig/motion_figure.h>
+#include <fascia/rig/rigged_model.h>
+
+#include "console.h"
+
+namespace fascia {
+
+// Whether a --motion names a motion capture file instead of a motion: by its ending.
+bool isMotionFile(std::string_view motion);
+
+// A motion capture file, and how its joints drive a rig's.
+struct MotionFile {
+  MotionFigure figure;  // metres
+  std::string unit;     // what its lengths were taken for
+  JointMap map;
+  std::vector<std::string> notes;
+};
+
+// joint_map: a file of pairs that win over the guesses; empty = all guessed. Throws Error.
+MotionFile readMotionFile(const std::string& path, const RiggedModel& rig,
+                          const std::string& joint_map);
+
+// The motion on the rig, under a name that the rig does not have yet. Adds to the notes.
+SampledMotion ontoRig(MotionFile& file, const RiggedModel& rig);
+
+// A line about the map for a person; every pair and note with --verbose.
+void reportMap(const MotionFile& file, const RiggedModel& rig, const Console& console);
+
+}  // namespace fascia
