@@ -9,5 +9,7 @@ find_package(meshoptimizer REQUIRED)
 find_package(draco REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(hwy REQUIRED QUIET IMPORTED_TARGET libhwy)
+# Its CMake target wants libminizip-dev, which it does not need.
+pkg_check_modules(assimp REQUIRED QUIET IMPORTED_TARGET assimp)
 pkg_check_modules(epoxy REQUIRED QUIET IMPORTED_TARGET epoxy)
 pkg_check_modules(egl REQUIRED QUIET IMPORTED_TARGET egl)

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include <fascia/rig/rigged_model.h>
+
+struct aiScene;
+
+namespace fascia {
+
+// Part of readWithAssimp(): the library's scene as a model. Throws Error where it has no rig.
+RiggedModel rigFromAssimp(const aiScene& scene, const std::string& path);
+
+}  // namespace fascia
