@@ -1,6 +1,7 @@
 #include "bench/deformation/pictures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fascia/io/image.h>
 #include <fascia/measure/deformation.h>
