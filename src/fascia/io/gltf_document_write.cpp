@@ -165,6 +165,16 @@ std::string glbOf(const Json& json, std::string binary, const std::string& path)
 
 }  // namespace
 
+int GltfDocument::addImage(std::span<const std::uint8_t> encoded) {
+  Json entry{Json::Object{}};
+  entry.set("bufferView", addView(encoded.data(), encoded.size(), 0));
+  if (const char* mimeType = mimeTypeOf({encoded.begin(), encoded.end()}))
+    entry.set("mimeType", mimeType);
+  Json::List& images = ensureList(json_, "images").list();
+  images.push_back(std::move(entry));
+  return static_cast<int>(images.size()) - 1;
+}
+
 void GltfDocument::embedImages() {
   const std::size_t count = root()["images"].size();
   for (std::size_t i = 0; i < count; ++i) {
