@@ -103,5 +103,10 @@ void meshSteps(benchmark::State& state) {
 }
 BENCHMARK(meshSteps)->ArgsProduct({{4, 9, 12, 22}, {1, 2}})->UseRealTime();
 
+void meshStepsThatBend(benchmark::State& state) {
+  run(state, 0.05);
+}
+BENCHMARK(meshStepsThatBend)->Args({9, 1})->UseRealTime();
+
 }  // namespace
 }  // namespace fascia
