@@ -43,6 +43,16 @@ double fieldLength(const DisplacementBasis& basis, Index point, Index field) {
   return basis.fields.col(field).segment<3>(3 * point).norm();
 }
 
+// Scales every field so that its weights reach from -1 or to 1.
+void scaleWeights(DisplacementBasis& basis) {
+  for (Index k = 0; k < basis.fields.cols(); ++k) {
+    const double largest = basis.weights.row(k).cwiseAbs().maxCoeff();
+    if (largest <= 0) continue;
+    basis.fields.col(k) *= largest;
+    basis.weights.row(k) /= largest;
+  }
+}
+
 // The angle between two fields a, b that makes Σ (|a|⁴ + |b|⁴) over points largest, and by how much
 // they turn: with u = |a|² - |b|² and v = 2 a·b, turning by θ leaves Σ (u cos 2θ + v sin 2θ)².
 double bestAngle(const DisplacementBasis& basis, Index a, Index b) {
@@ -101,8 +111,10 @@ void refitFields(const Eigen::MatrixXf& displacements, DisplacementBasis& basis)
 
 }  // namespace
 
-DisplacementBasis principalFields(const Eigen::MatrixXf& displacements, int most,
-                                  double tolerance) {
+DisplacementBasis principalFields(Eigen::MatrixXf& displacements, int most, double tolerance) {
+  DisplacementBasis basis;
+  basis.offset = displacements.cast<double>().rowwise().mean();
+  displacements.colwise() -= basis.offset.cast<float>();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
       tallProduct(displacements, displacements));
   const Index frames = displacements.cols();
@@ -115,7 +127,6 @@ DisplacementBasis principalFields(const Eigen::MatrixXf& displacements, int most
          std::sqrt(std::max(left, 0.0) / entries) > tolerance) {
     left -= energy[count++];
   }
-  DisplacementBasis basis;
   const Eigen::MatrixXd modes = solver.eigenvectors().rightCols(count).rowwise().reverse();
   basis.weights = modes.transpose();
   basis.fields = tallTimes(displacements, modes);
@@ -141,29 +152,34 @@ void localizeFields(DisplacementBasis& basis) {
 
 void normalizeWeights(DisplacementBasis& basis) {
   for (Index k = 0; k < basis.fields.cols(); ++k) {
-    const double largest = basis.weights.row(k).cwiseAbs().maxCoeff();
-    if (largest <= 0) continue;
-    basis.fields.col(k) *= largest;
-    basis.weights.row(k) /= largest;
+    const double least = basis.weights.row(k).minCoeff();
+    basis.offset += least * basis.fields.col(k);
+    basis.weights.row(k).array() -= least;
   }
+  scaleWeights(basis);
 }
 
 void sparsifyFields(const Eigen::MatrixXf& displacements, double share, DisplacementBasis& basis) {
-  if (share <= 0 || basis.fields.cols() == 0) return;
-  normalizeWeights(basis);
+  if (share <= 0) return;
+  scaleWeights(basis);
+  const Index points = basis.offset.size() / 3;
   double longest = 0;
-  const Index points = basis.fields.rows() / 3;
-  for (Index k = 0; k < basis.fields.cols(); ++k) {
-    for (Index i = 0; i < points; ++i) longest = std::max(longest, fieldLength(basis, i, k));
-  }
-  for (Index k = 0; k < basis.fields.cols(); ++k) {
-    for (Index i = 0; i < points; ++i) {
-      if (fieldLength(basis, i, k) < share * longest) {
-        basis.fields.col(k).segment<3>(3 * i).setZero();
-      }
+  for (Index i = 0; i < points; ++i) {
+    longest = std::max(longest, basis.offset.segment<3>(3 * i).norm());
+    for (Index k = 0; k < basis.fields.cols(); ++k) {
+      longest = std::max(longest, fieldLength(basis, i, k));
     }
   }
-  for (int round = 0; round < kRefits; ++round) {
+  const auto truncate = [&](auto&& displacement) {
+    if (displacement.norm() < share * longest) displacement.setZero();
+  };
+  for (Index i = 0; i < points; ++i) {
+    truncate(basis.offset.segment<3>(3 * i));
+    for (Index k = 0; k < basis.fields.cols(); ++k) {
+      truncate(basis.fields.col(k).segment<3>(3 * i));
+    }
+  }
+  for (int round = 0; round < kRefits && basis.fields.cols() > 0; ++round) {
     refitWeights(displacements, basis);
     refitFields(displacements, basis);
   }

@@ -43,21 +43,23 @@ Eigen::MatrixXf displacementsOf(const Simulation& simulation) {
   return out;
 }
 
-// A frame as the world sees it: what every field moves, and what is missing without them.
+// A frame as the world sees it: what every field moves, and what is missing with the offset alone.
 struct WorldFrame {
   Eigen::MatrixXd fields;   // 3 points x K
   Eigen::VectorXd missing;  // 3 points
 };
 
-WorldFrame worldFrame(const Simulation& simulation, const Eigen::MatrixXd& fields,
+WorldFrame worldFrame(const Simulation& simulation, const DisplacementBasis& basis,
                       std::size_t frame) {
+  const Eigen::MatrixXd& fields = basis.fields;
   WorldFrame out{Eigen::MatrixXd(fields.rows(), fields.cols()), Eigen::VectorXd(fields.rows())};
   for (std::size_t i = 0; i < simulation.rest.size(); ++i) {
     const BlendedMatrix blend = blendBones(simulation.weights[i], simulation.bones[frame]);
     const Index row = 3 * static_cast<Index>(i);
     out.fields.middleRows<3>(row) = blend.linear * fields.middleRows<3>(row);
     out.missing.segment<3>(row) =
-        simulation.frames[frame][i].cast<double>() - blend.point(simulation.rest[i].cast<double>());
+        simulation.frames[frame][i].cast<double>() -
+        blend.point(simulation.rest[i].cast<double>() + basis.offset.segment<3>(row));
   }
   return out;
 }
@@ -72,7 +74,7 @@ std::vector<FrameError> fitInWorld(const Simulation& simulation, DisplacementBas
   basis.weights.resize(basis.fields.cols(), static_cast<Index>(frames));
   std::vector<FrameError> errors(frames);
   parallelFor(frames, [&](std::size_t f) {
-    const WorldFrame world = worldFrame(simulation, basis.fields, f);
+    const WorldFrame world = worldFrame(simulation, basis, f);
     Eigen::VectorXd left = world.missing;
     if (basis.fields.cols() > 0) {
       Eigen::MatrixXd gram = world.fields.transpose() * world.fields;
@@ -90,30 +92,39 @@ std::vector<FrameError> fitInWorld(const Simulation& simulation, DisplacementBas
   return errors;
 }
 
+MorphBasis::Target targetOf(const Eigen::VectorXd& field) {
+  MorphBasis::Target target;
+  for (Index i = 0; i < field.size() / 3; ++i) {
+    const Eigen::Vector3d d = field.segment<3>(3 * i);
+    if (d.isZero(0)) continue;
+    target.points.push_back(static_cast<std::uint32_t>(i));
+    target.displacement_m.push_back(d.cast<float>());
+  }
+  return target;
+}
+
 MorphBasis packed(const DisplacementBasis& basis, std::size_t frames) {
   MorphBasis out;
   out.weights.resize(frames);
-  for (Index k = 0; k < basis.fields.cols(); ++k) {
-    MorphBasis::Target target;
-    for (Index i = 0; i < basis.fields.rows() / 3; ++i) {
-      const Eigen::Vector3d d = basis.fields.col(k).segment<3>(3 * i);
-      if (d.isZero(0)) continue;
-      target.points.push_back(static_cast<std::uint32_t>(i));
-      target.displacement_m.push_back(d.cast<float>());
-    }
-    if (target.points.empty()) continue;
+  const auto add = [&](const Eigen::VectorXd& field, const auto& weightIn) {
+    MorphBasis::Target target = targetOf(field);
+    if (target.points.empty()) return;
     out.targets.push_back(std::move(target));
     for (std::size_t f = 0; f < frames; ++f) {
-      const double w = basis.weights(k, static_cast<Index>(f));
-      out.weights[f].push_back(static_cast<float>(std::clamp(w, -1.0, 1.0)));
+      out.weights[f].push_back(static_cast<float>(weightIn(static_cast<Index>(f))));
     }
+  };
+  add(basis.offset, [](Index) { return 1.0; });
+  for (Index k = 0; k < basis.fields.cols(); ++k) {
+    add(basis.fields.col(k), [&](Index f) { return std::clamp(basis.weights(k, f), 0.0, 1.0); });
   }
   return out;
 }
 
-MorphBasis basisOf(const Simulation& simulation, const Eigen::MatrixXf& displacements, int targets,
+// One of the targets is the offset.
+MorphBasis basisOf(const Simulation& simulation, Eigen::MatrixXf displacements, int targets,
                    const MorphOptions& options) {
-  DisplacementBasis basis = principalFields(displacements, targets, 0);
+  DisplacementBasis basis = principalFields(displacements, targets - 1, 0);
   localizeFields(basis);
   sparsifyFields(displacements, options.sparsity, basis);
   const std::vector<FrameError> errors = fitInWorld(simulation, basis);
@@ -162,9 +173,11 @@ MorphBasis findMorphBasis(std::span<const Eigen::Vector3f> rest,
   if (options.tolerance_m <= 0) {
     return basisOf(simulation, displacements, options.targets, options);
   }
-  // The fewest fields that could do, then more until they do after truncation too.
-  int targets = static_cast<int>(
-      principalFields(displacements, options.targets, options.tolerance_m).fields.cols());
+  // The fewest that could do, then more until they do after truncation too.
+  Eigen::MatrixXf scratch = displacements;
+  int targets =
+      1 + static_cast<int>(
+              principalFields(scratch, options.targets - 1, options.tolerance_m).fields.cols());
   MorphBasis best = basisOf(simulation, displacements, targets, options);
   for (int t = 1; t < kMostTries && best.rms_m > options.tolerance_m; ++t) {
     if (targets >= options.targets) break;

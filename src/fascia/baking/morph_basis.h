@@ -21,8 +21,10 @@ struct MorphBasis {
     std::vector<Eigen::Vector3f> displacement_m;  // of those
   };
   std::vector<Target> targets;
-  std::vector<std::vector<float>> weights;  // frame, target; in [-1, 1]
-  double rms_m = 0, max_m = 0;              // error over all points and frames, in the world
+  // Frame, target; in [0, 1], as some importers cut off what is negative. The first target may be
+  // an offset with the weight 1 throughout.
+  std::vector<std::vector<float>> weights;
+  double rms_m = 0, max_m = 0;  // error over all points and frames, in the world
 };
 
 MorphBasis findMorphBasis(std::span<const Eigen::Vector3f> rest,
