@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -18,6 +19,27 @@
 
 namespace fascia {
 namespace {
+
+// Skin for an imported figure. Its joints already carry it well, so tissue holds it closely: it
+// gives and trembles, and the membrane evens out what joints fold, over a few hundredths of the
+// figure's size. The fat that the fit left can be pressed nearly flat before flesh shows through.
+SkinDef skinFor(const RiggedModel& model) {
+  const double size = model.size_m();
+  SkinDef skin;
+  skin.tissue.stiffness_N_per_m3 = 16000;
+  skin.tissue.damping_Ns_per_m3 = 100;
+  const double evening_m = 0.018 * size;
+  const double stretch =
+      std::clamp(skin.tissue.stiffness_N_per_m3 * evening_m * evening_m, 1e-3, 1e6);
+  skin.material.stretch_u_N_per_m = skin.material.stretch_v_N_per_m = stretch;
+  skin.material.shear_N_per_m = 0.5 * stretch;
+  skin.material.prestretch = 1;
+  skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
+  skin.fat.compressible = 0.8;
+  skin.contact.self = true;
+  skin.contact.gap_m = std::clamp(0.0006 * size, 1e-6, 1.0);
+  return skin;
+}
 
 namespace fs = std::filesystem;
 
@@ -164,7 +186,7 @@ void flesh(const FleshOptions& options, const Console& console) {
   def.skeleton = std::move(fit.skeleton);
   def.flesh = std::move(fit.flesh);
   def.rig = rig.def;
-  def.skin.emplace();
+  def.skin = skinFor(model);
   writeCharacterFile(def, options.output);
   console.say("wrote " + options.output);
   console.say(

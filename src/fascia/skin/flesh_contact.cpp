@@ -26,6 +26,9 @@ bool near(const BlockBox& a, const Box& b, float reach) {
   return true;
 }
 
+// Of what is not felt: far away.
+constexpr float kFarAway = 1e30f;
+
 // One block of points against the solids of a field.
 struct BlockTest {
   const Field& field;
@@ -33,12 +36,16 @@ struct BlockTest {
   ContactLanes& lanes;
   std::span<std::int32_t> nearby;  // scratch for as many as the field has solids
   std::span<float> gaps = {};      // per solid: no point is nearer than this; updated by visits
+  const std::uint32_t* felt = nullptr;      // per solid: which points feel it; null: all do
+  const std::uint32_t* yielding = nullptr;  // per solid: see FleshSense
+  std::span<float> yields = {};             // scratch: per solid and point
   std::size_t nearbyCount = 0;
 
   bool findSolids(const BlockBox& box, std::span<const Box> boxes, float reach) {
     nearbyCount = 0;
     for (std::size_t s = 0; s < boxes.size(); ++s)
-      if ((gaps.empty() || gaps[s] <= reach) && near(box, boxes[s], reach))
+      if ((gaps.empty() || gaps[s] <= reach) && (!felt || felt[s] != 0) &&
+          near(box, boxes[s], reach))
         nearby[nearbyCount++] = static_cast<std::int32_t>(s);
     return nearbyCount > 0;
   }
@@ -52,12 +59,49 @@ struct BlockTest {
     for (const std::int32_t s : nearby.first(nearbyCount)) {
       field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
                      lanes.normal.view(block.count));
+      const float yielded = felt ? soften(static_cast<std::size_t>(s)) : 0;
       const float gap = absorbSolid(static_cast<float>(s), move, block.count, lanes);
-      if (!gaps.empty()) gaps[static_cast<std::size_t>(s)] = gap;
+      if (!gaps.empty()) gaps[static_cast<std::size_t>(s)] = gap - yielded;
       deepest = std::max(deepest, -gap);
     }
     return deepest;
   }
+
+  // What a solid is to points that do not feel it, or yield to it: farther away. Returns the most
+  // by which it was moved away from a point that feels it.
+  float soften(std::size_t solid) {
+    const float* yield = yieldsOf(solid);
+    float most = 0;
+    for (std::size_t l = 0; l < block.count; ++l) {
+      if (!(felt[solid] >> l & 1u)) {
+        lanes.distance[l] = kFarAway;
+      } else if (yielding[solid] >> l & 1u) {
+        lanes.distance[l] += yield[l];
+        most = std::max(most, yield[l]);
+      }
+    }
+    return most;
+  }
+
+  // How far each point yields to the nearby solids, see FleshSense.
+  using Role = FleshContact::Role;
+  void findYields(const VectorArray& carried, const FloatArray& yield_m, Role role) {
+    for (const std::int32_t n : nearby.first(nearbyCount)) {
+      const auto s = static_cast<std::size_t>(n);
+      if (yielding[s] == 0) continue;
+      field.evaluate(SolidId(n), view(carried, block.first, block.count), lanes.distance.data(),
+                     lanes.normal.view(block.count));
+      float* yields = yieldsOf(s);
+      for (std::size_t l = 0; l < block.count; ++l) {
+        const float depth = lanes.fat[l] - lanes.distance[l], yield = yield_m[block.first + l];
+        const float push = yield - 0.5f * (depth - yield);
+        yields[l] = depth <= yield                      ? 0
+                    : role == Role::anchors && push > 0 ? depth - push
+                                                        : kFarAway;
+      }
+    }
+  }
+  float* yieldsOf(std::size_t solid) { return yields.data() + solid * PointBlock::kCapacity; }
 
   // Like visit(true), until no point is inside any solid or `passes` are used up. Returns the sum
   // of the passes' depths.
@@ -79,14 +123,26 @@ struct BlockTest {
     return must;
   }
 
+  // Each point's from its nearest solid: solids that swell take long to say how fast.
   void readFleshVelocities() {
-    ContactLanes::Lanes3 velocity;
+    ContactLanes::Lanes3 place, velocity;
+    std::array<std::size_t, PointBlock::kCapacity> lane;
     for (const std::int32_t s : nearby.first(nearbyCount)) {
-      const auto solid = static_cast<float>(s);
-      const auto end = lanes.nearestSolid.begin() + block.count;
-      if (std::find(lanes.nearestSolid.begin(), end, solid) == end) continue;
-      field.velocity(SolidId(s), lanes.place.view(block.count), velocity.view(block.count));
-      absorbVelocity(solid, velocity, lanes);
+      std::size_t count = 0;
+      for (std::size_t l = 0; l < block.count; ++l) {
+        if (lanes.nearestSolid[l] != static_cast<float>(s)) continue;
+        place.x[count] = lanes.place.x[l];
+        place.y[count] = lanes.place.y[l];
+        place.z[count] = lanes.place.z[l];
+        lane[count++] = l;
+      }
+      if (count == 0) continue;
+      field.velocity(SolidId(s), place.view(count), velocity.view(count));
+      for (std::size_t i = 0; i < count; ++i) {
+        lanes.fleshVelocity.x[lane[i]] = velocity.x[i];
+        lanes.fleshVelocity.y[lane[i]] = velocity.y[i];
+        lanes.fleshVelocity.z[lane[i]] = velocity.z[i];
+      }
     }
   }
 };
@@ -108,8 +164,8 @@ void readBoxes(const Field& field, std::vector<Box>& boxes) {
 
 }  // namespace
 
-FleshContact::FleshContact(std::vector<PointBlock> blocks)
-    : blocks_(std::move(blocks)), results_(blocks_.size()) {}
+FleshContact::FleshContact(std::vector<PointBlock> blocks, const FleshSense* sense, Role role)
+    : blocks_(std::move(blocks)), sense_(sense), role_(role), results_(blocks_.size()) {}
 
 FleshContact::Result FleshContact::project(const Field& field, const PointModel& points,
                                            float reach_m, float restitution, VectorArray& position,
@@ -120,6 +176,8 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
   const std::size_t solids = boxes_.size();
   const std::size_t tasks = (blocks_.size() + kBlocksPerTask - 1) / kBlocksPerTask;
   nearby_.resize(tasks * solids);
+  const std::size_t yieldsPerTask = sense_ ? solids * PointBlock::kCapacity : 0;
+  yields_.resize(tasks * yieldsPerTask);
   parallelFor(tasks, [&](std::size_t t) {
     ContactLanes lanes{};
     const std::span scratch(nearby_.data() + t * solids, solids);
@@ -135,9 +193,15 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
         gaps[s] = nearer < -kUnknown ? gaps[s] - nearer : kUnknown;
       }
       BlockTest test{field, blocks_[b], lanes, scratch, gaps};
+      if (sense_) {
+        test.felt = sense_->felt.data() + b * solids;
+        test.yielding = sense_->yielding.data() + b * solids;
+        test.yields = std::span(yields_).subspan(t * yieldsPerTask, yieldsPerTask);
+      }
       float searched = reach_m, pushed = 0;
       bool any = test.findSolids(box, boxes_, searched);
       for (int search = 0; any && search < kSearches; ++search) {
+        if (sense_) test.findYields(around.carried, sense_->yield_m, role_);
         pushed += test.leaveSolids(kPasses);
         if (kPushMargin * pushed <= searched) break;
         // Pushed so far that solids beyond the search may have come near.
@@ -147,7 +211,7 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
       }
       for (float& gap : gaps) gap -= kPushMargin * pushed;
       results_[b].maxCorrection_m = pushed;
-      if (any) test.readFleshVelocities();
+      if (any && role_ == Role::points) test.readFleshVelocities();
       results_[b].maxSpeed_m_per_s = finishContact(blocks_[b], any, reach_m, restitution, points,
                                                    lanes, position, velocity, around);
     }
@@ -175,9 +239,13 @@ float FleshContact::approach(const BlockMotion& block, const SolidMotion& solid)
 void FleshContact::followSolids(const Field& field) {
   const std::size_t solids = boxes_.size();
   const bool first = motions_.size() != solids;
+  if (first) gaps_.assign(blocks_.size() * solids, kUnknown);
+  if (motionsOf_) {
+    motions_ = motionsOf_->motions_;
+    return;
+  }
   if (first) {
     motions_.resize(solids);
-    gaps_.assign(blocks_.size() * solids, kUnknown);
     corners_.resize(solids * kCorners);
     cornersNow_.resize(kCorners);
     cornerMaterial_.resize(solids * kCorners);
@@ -227,16 +295,24 @@ FleshContact::SolidMotion FleshContact::motionOf(std::size_t firstCorner) const 
 }
 
 float FleshContact::deepest(const Field& field, const PointModel& points,
-                            const VectorArray& position) const {
+                            const VectorArray& position, const VectorArray& carried) const {
   std::vector<Box> boxes;
   readBoxes(field, boxes);
   std::vector<std::int32_t> nearby(boxes.size());
+  std::vector<float> yields(sense_ ? boxes.size() * PointBlock::kCapacity : 0);
   ContactLanes lanes{};
   float depth = 0;
-  for (const PointBlock& block : blocks_) {
-    const BlockBox box = loadContactLanes(block, position, points.fat, lanes);
-    BlockTest test{field, block, lanes, nearby};
-    if (test.findSolids(box, boxes, 0)) depth = std::max(depth, test.visit(false));
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const BlockBox box = loadContactLanes(blocks_[b], position, points.fat, lanes);
+    BlockTest test{field, blocks_[b], lanes, nearby};
+    if (sense_) {
+      test.felt = sense_->felt.data() + b * boxes.size();
+      test.yielding = sense_->yielding.data() + b * boxes.size();
+      test.yields = yields;
+    }
+    const bool any = test.findSolids(box, boxes, 0);
+    if (any && sense_) test.findYields(carried, sense_->yield_m, role_);
+    if (any) depth = std::max(depth, test.visit(false));
   }
   return depth;
 }

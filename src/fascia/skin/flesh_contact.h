@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include <fascia/base/aligned.h>
@@ -9,6 +11,18 @@
 
 namespace fascia {
 
+// Which points feel which solids, where not all feel all: on imported figures, whose limbs pass
+// through each other and through the body in many a clip. Masks have an entry per block and solid
+// (block * solids + solid), bit l for the block's point l.
+struct FleshSense {
+  std::vector<std::uint32_t> felt;
+  // Of those, the points that other joints move too, so that the pose can drive the solid over
+  // them: where their joints alone would carry them deeper than this (per point, in storage order)
+  // they no longer feel it. What a clip puts inside of another limb is not torn off.
+  std::vector<std::uint32_t> yielding;
+  FloatArray yield_m;
+};
+
 // Non-penetration of skin and flesh (spec L10, L11): every point keeps the distance of its fat τ
 // from every solid. The paper tests the point moved inward along the skin's normal, g(r − τ n) ≥ 0;
 // as a distance changes at most as fast as its point moves, d(r) ≥ τ implies that for every n, also
@@ -17,7 +31,14 @@ namespace fascia {
 class FleshContact {
  public:
   FleshContact() = default;
-  explicit FleshContact(std::vector<PointBlock> blocks);
+  // With `sense`, points feel only some of the solids, and yield to those that the pose itself
+  // drives over them; it must outlive this. Anchors yield gently: a depth x of the pose becomes a
+  // push of x up to the yield, of less the deeper it is, and of 0 beyond three yields.
+  enum class Role { points, anchors };
+  explicit FleshContact(std::vector<PointBlock> blocks, const FleshSense* sense = nullptr,
+                        Role role = Role::points);
+  // Solids' motions are taken from `other`, which is always asked first in the same pose.
+  void shareMotions(const FleshContact& other) { motionsOf_ = &other; }
 
   struct Result {
     float maxCorrection_m = 0;
@@ -31,20 +52,27 @@ class FleshContact {
   // found when a block was last tested against a solid, less the ways both have gone since: solids
   // that cannot have come within reach are not asked again. A point in several solids is projected
   // in turn until it is outside of all, or kPasses are used up.
+  // With a sense, around.carried is read.
   Result project(const Field& field, const PointModel& points, float reach_m, float restitution,
                  VectorArray& position, VectorArray& velocity, PointSurroundings& around);
 
-  // How deep the deepest point is (m, ≥ 0), measured afresh and without changing anything.
-  float deepest(const Field& field, const PointModel& points, const VectorArray& position) const;
+  // How deep the deepest point is (m, ≥ 0), measured afresh and without changing anything; beyond
+  // where the pose wants it.
+  float deepest(const Field& field, const PointModel& points, const VectorArray& position,
+                const VectorArray& carried = {}) const;
 
  private:
   static constexpr int kPasses = 16;   // more than creases of three solids need
   static constexpr int kSearches = 4;  // each at least twice as wide as the one before
 
   std::vector<PointBlock> blocks_;
+  const FleshSense* sense_ = nullptr;
+  Role role_ = Role::points;
+  const FleshContact* motionsOf_ = nullptr;
   std::vector<Result> results_;
   std::vector<Box> boxes_;
   std::vector<std::int32_t> nearby_;  // per task: as many as there are solids
+  std::vector<float> yields_;         // per task, solid and point of a block; see FleshSense
 
   // What is known from the last call; it saves work and changes no result.
   VectorArray last_;         // positions

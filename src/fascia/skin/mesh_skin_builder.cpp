@@ -18,6 +18,14 @@ namespace {
 constexpr double kStep_s = 1.0 / 480;
 // A point farther from all flesh than this share of the model's size has none beneath it.
 constexpr double kBare = 0.06;
+// A joint with a smaller share of a point does not press on it.
+constexpr float kFeltWeight = 0.05f;
+// How far flesh may press a point away from where its joints carry it: so many times the fat that
+// lies there, and at least this share of the model's size.
+constexpr double kYieldOfFat = 1.5, kLeastYield = 0.004;
+// How far a point may slide from its anchor: so much of its fat, and this share of the model's
+// size.
+constexpr double kSlideOfFat = 0.6, kLeastSlide = 0.0015;
 // How much firmer, and how much softer, the tissue is where the fat is thin or thick.
 constexpr double kFirmest = 6, kSoftest = 0.5;
 constexpr double kLightest = 0.3, kHeaviest = 2.5;
@@ -87,6 +95,7 @@ double medianOf(std::vector<float> values) {
 void MeshSkinBuilder::build() {
   report_.checkValues(def_);
   if (!checkDef() || !findJoints()) return;
+  findFelt();
   measureFat();
   chooseFixed();
   orderPoints();
@@ -137,6 +146,28 @@ bool MeshSkinBuilder::findJoints() {
   return ok;
 }
 
+// The solids that a point feels: those of the joints that move it. Limbs of imported figures pass
+// through each other and through the body in many a clip; a point that had to leave every solid
+// that comes over it would be torn off its place. Other parts of the body are for self-contact.
+void MeshSkinBuilder::findFelt() {
+  std::vector<std::vector<SolidId>> ofJoint(base_.skeleton.jointCount());
+  for (std::size_t s = 0; s < base_.flesh.solidCount(); ++s) {
+    const SolidId solid(static_cast<std::int64_t>(s));
+    ofJoint[base_.flesh.joint(solid).index()].push_back(solid);
+  }
+  felt_.resize(rig_.points_m.size());
+  for (std::size_t p = 0; p < felt_.size(); ++p) {
+    for (std::size_t i = 0; i < PointWeights::kMost; ++i) {
+      if (rig_.weights[p].weight[i] < kFeltWeight) continue;
+      const JointCarrier::Joint& joint = joints_[rig_.weights[p].joint[i]];
+      const std::vector<SolidId>& solids = ofJoint[joint.skeletonJoint];
+      felt_[p].insert(felt_[p].end(), solids.begin(), solids.end());
+    }
+    if (felt_[p].empty())
+      felt_[p].push_back(nearestFlesh(base_.posedFlesh, modelPoint(rig_, p)).solid);
+  }
+}
+
 // The fat of an imported figure is what lies between its surface and its solids.
 void MeshSkinBuilder::measureFat() {
   const std::size_t count = rig_.points_m.size();
@@ -145,7 +176,7 @@ void MeshSkinBuilder::measureFat() {
   covered_.resize(count);
   const double bare = kBare * rig_.size_m();
   parallelFor(count, [&](std::size_t p) {
-    const NearestFlesh nearest = nearestFlesh(base_.posedFlesh, modelPoint(rig_, p));
+    const NearestFlesh nearest = nearestFlesh(base_.posedFlesh, modelPoint(rig_, p), felt_[p]);
     gap_[p] = nearest.distance;
     solid_[p] = nearest.solid;
     covered_[p] = nearest.distance < bare;
@@ -194,6 +225,23 @@ void MeshSkinBuilder::orderPoints() {
     skin_.blocks_.push_back({k, static_cast<std::uint32_t>(std::min<std::size_t>(
                                     PointBlock::kCapacity, elasticCount_ - k))});
   for (std::size_t k = elasticCount_; k < order_.size(); ++k) skin_.fixedPoints_.push_back(k);
+  auto sense = std::make_shared<FleshSense>();
+  const std::size_t solids = base_.flesh.solidCount();
+  sense->felt.assign(skin_.blocks_.size() * solids, 0);
+  sense->yielding = sense->felt;
+  sense->yield_m.resize(skin_.blocks_.size() * PointBlock::kCapacity);
+  for (std::size_t k = 0; k < elasticCount_; ++k) {
+    const auto bit = std::uint32_t{1} << (k % PointBlock::kCapacity);
+    sense->yield_m[k] = static_cast<float>(
+        std::max(kLeastYield * rig_.size_m(), kYieldOfFat * double{gap_[order_[k]]}));
+    const bool shared = rig_.weights[order_[k]].weight[0] < 1 - kFeltWeight;
+    for (const SolidId solid : felt_[order_[k]]) {
+      const std::size_t entry = k / PointBlock::kCapacity * solids + solid.index();
+      sense->felt[entry] |= bit;
+      if (shared) sense->yielding[entry] |= bit;
+    }
+  }
+  skin_.sense_ = std::move(sense);
 }
 
 void MeshSkinBuilder::makeRestShape() {
@@ -283,6 +331,11 @@ void MeshSkinBuilder::makeModel() {
     const float natural = gap_[order_[k]];
     skin_.points_.fat[k] = natural > 0 ? std::min(kept * skin_.points_.fat[k], natural) : natural;
   }
+  skin_.points_.slideLimit.resize(elasticCount_);
+  for (std::size_t k = 0; k < elasticCount_; ++k)
+    skin_.points_.slideLimit[k] =
+        static_cast<float>(kSlideOfFat * double{skin_.quantities_[SkinQuantity::fat][k]} +
+                           kLeastSlide * skin_.size_m_);
   skin_.defaultStep_s_ = kStep_s;
   if (def_.contact.self) {
     std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -26,6 +26,7 @@ class MeshSkinBuilder {
  private:
   bool checkDef() const;
   bool findJoints();
+  void findFelt();
   void measureFat();
   void chooseFixed();
   void orderPoints();
@@ -43,10 +44,11 @@ class MeshSkinBuilder {
 
   std::vector<JointCarrier::Joint> joints_;
   // Per point of the model:
-  std::vector<float> gap_;      // from the nearest solid, m
-  std::vector<SolidId> solid_;  // that one
-  std::vector<char> covered_;   // whether it counts as flesh beneath
-  std::vector<char> fixed_;     // carried by joints, not simulated
+  std::vector<std::vector<SolidId>> felt_;  // solids that press on it
+  std::vector<float> gap_;                  // from the nearest of them, m
+  std::vector<SolidId> solid_;              // that one
+  std::vector<char> covered_;               // whether it counts as flesh beneath
+  std::vector<char> fixed_;                 // carried by joints, not simulated
   std::vector<std::uint32_t> storageOf_;
   std::vector<std::uint32_t> order_;  // model point per storage index
   std::size_t elasticCount_ = 0;      // the first so many in storage are simulated

@@ -52,8 +52,7 @@ OdeSkin::OdeSkin(const Skin& skin)
   ode_.resize(inverseMass_.size());
   dampingDirection_.resize(points_.size());
   dampingPlace_.reserve(inverseMass_.size());
-  for (VectorArray* a : {&position_, &velocity_, &force_})
-    a->resize(skin.topology().storage());
+  for (VectorArray* a : {&position_, &velocity_, &force_}) a->resize(skin.topology().storage());
 }
 
 void OdeSkin::load(std::span<const double> r, VectorArray& out) const {
@@ -177,7 +176,8 @@ void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<con
 
 double OdeSkin::violation(double t_s, std::span<const double> r) {
   load(r, position_);
-  return contact_->deepest(*poses_->at(t_s).field, skin_.points(), position_);
+  return contact_->deepest(*poses_->at(t_s).field, skin_.points(), position_,
+                           state_->surroundings.carried);
 }
 
 double OdeSkin::project(double t_s, std::span<double> r, std::span<double> v) {

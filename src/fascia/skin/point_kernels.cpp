@@ -125,15 +125,6 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
   return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
 
-void absorbVelocityImpl(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes) {
-  const D d;
-  for (std::size_t l = 0; l < PointBlock::kCapacity; l += hn::Lanes(d)) {
-    const auto mine = hn::Eq(hn::LoadU(d, lanes.nearestSolid.data() + l), hn::Set(d, solid));
-    const MutablePointers out = pointers(lanes.fleshVelocity);
-    out.set(l, select(mine, pointers(velocity).at(l), out.at(l)));
-  }
-}
-
 float finishImpl(const PointBlock& block, bool any, float reach, float restitution,
                  const PointModel& points, const ContactLanes& lanes, VectorArray& position,
                  VectorArray& velocity, PointSurroundings& around) {
@@ -235,7 +226,6 @@ namespace fascia {
 HWY_EXPORT(loadImpl);
 HWY_EXPORT(motionImpl);
 HWY_EXPORT(absorbImpl);
-HWY_EXPORT(absorbVelocityImpl);
 HWY_EXPORT(finishImpl);
 HWY_EXPORT(followImpl);
 HWY_EXPORT(followCarrierImpl);
@@ -250,10 +240,6 @@ BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
 
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
   return HWY_DYNAMIC_DISPATCH(absorbImpl)(solid, move, count, lanes);
-}
-
-void absorbVelocity(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(absorbVelocityImpl)(solid, velocity, lanes);
 }
 
 float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,

@@ -64,9 +64,6 @@ BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
 // surface instead: in a crease between two solids going to and fro would take dozens of turns.
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes);
 
-// Copies `velocity` to the lanes whose nearest solid this is.
-void absorbVelocity(float solid, const ContactLanes::Lanes3& velocity, ContactLanes& lanes);
-
 // Writes the result of a block: moved positions, velocities without their approaching part, half
 // spaces. `any` = false: nothing is within reach. Returns the largest squared speed
 // relative to the anchors.

@@ -14,6 +14,7 @@ struct PointModel {
   FloatArray tissueDamping;     // N s/m
   FloatArray tissueRestLength;  // m
   FloatArray stiffnessBound;  // N/m, membrane + bending + tissue: what explicit steps must resolve
+  FloatArray slideLimit;      // m; farthest from its anchor at an interval's end; empty: any
   FloatArray free;            // 1, or 0 for points fixed to a joint and for padding
 };
 
@@ -23,6 +24,8 @@ struct PointSurroundings {
   // A half space per point that the flesh fills: n·r < offset is inside. n = 0: nothing near.
   VectorArray normal, fleshVelocity;
   FloatArray offset;  // at the interval's start; it moves with n·fleshVelocity
+  // Where the points' joints alone would carry them at the interval's start; empty: not known.
+  VectorArray carried;
 
   void resize(std::size_t n) {
     for (VectorArray* a : {&anchor, &anchorVelocity, &normal, &fleshVelocity}) a->resize(n);

@@ -88,6 +88,7 @@ class Skin {
   const VectorArray& restPosition() const { return rest_; }
   const SkinQuantities& quantities() const { return quantities_; }
   std::span<const PointBlock> blocks() const { return blocks_; }
+  const FleshSense* sense() const { return sense_.get(); }  // nullptr: points feel all solids
   double defaultStep_s() const { return defaultStep_s_; }
   // The same skin at a resolution whose waves a step of about a millisecond resolves; nullptr if
   // this one's does. See leapfrog.h.
@@ -124,6 +125,7 @@ class Skin {
   PointModel points_;
   ContactResponse contactResponse_;
   std::vector<PointBlock> blocks_;
+  std::shared_ptr<const FleshSense> sense_;
   double defaultStep_s_ = 0, size_m_ = 0;
   std::vector<std::size_t> fixedPoints_;
   std::shared_ptr<const SelfContactModel> selfContact_;

@@ -87,17 +87,23 @@ SolidId SkinReport::findSolid(const std::string& where, const std::string& name)
   return id;
 }
 
-NearestFlesh nearestFlesh(const Field& field, const Vec3& p) {
+NearestFlesh nearestFlesh(const Field& field, const Vec3& p, std::span<const SolidId> solids) {
   const float x = static_cast<float>(p.x()), y = static_cast<float>(p.y()),
               z = static_cast<float>(p.z());
   NearestFlesh best;
-  for (std::size_t s = 0; s < field.solidCount(); ++s) {
-    const SolidId solid(static_cast<std::int64_t>(s));
+  for (const SolidId solid : solids) {
     float d, nx, ny, nz;
     field.evaluate(solid, {&x, &y, &z, 1}, &d, {&nx, &ny, &nz, 1});
     if (d < best.distance) best = {d, solid, Vec3(nx, ny, nz)};
   }
   return best;
+}
+
+NearestFlesh nearestFlesh(const Field& field, const Vec3& p) {
+  std::vector<SolidId> all;
+  for (std::size_t s = 0; s < field.solidCount(); ++s)
+    all.emplace_back(static_cast<std::int64_t>(s));
+  return nearestFlesh(field, p, all);
 }
 
 PointModel makePointModel(const PointModelInput& in) {

@@ -41,7 +41,8 @@ struct NearestFlesh {
   SolidId solid;
   Vec3 normal = Vec3::UnitY();
 };
-NearestFlesh nearestFlesh(const Field& field, const Vec3& p);
+NearestFlesh nearestFlesh(const Field& field, const Vec3& p, std::span<const SolidId> solids);
+NearestFlesh nearestFlesh(const Field& field, const Vec3& p);  // of all
 
 // Regions and brushes on the points of a skin.
 struct EditPoint {

@@ -48,9 +48,10 @@ void carrySkin(const Skin& skin, const SkinPose& pose, SkinState& state) {
 }
 
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats) {
-  const FleshContact contact({skin.blocks().begin(), skin.blocks().end()});
+  const FleshContact contact({skin.blocks().begin(), skin.blocks().end()}, skin.sense());
   stats.max_penetration_m = std::max<double>(
-      stats.max_penetration_m, contact.deepest(*pose.field, skin.points(), state.position));
+      stats.max_penetration_m,
+      contact.deepest(*pose.field, skin.points(), state.position, state.surroundings.carried));
   stats.max_edge_stretch =
       std::max(stats.max_edge_stretch, skin.topology().maxStretch(state.position));
 }

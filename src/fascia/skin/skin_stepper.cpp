@@ -19,6 +19,9 @@ constexpr double kRidingStep_s = 1.0 / 960;
 // A skin point whose anchor jumps farther than this share of the skin's size within one interval
 // has been teleported with the body, not moved.
 constexpr double kJump = 0.2;
+// Solids within this share of the skin's size of an anchor are tested at once: more than most
+// pushes need, and few solids more.
+constexpr float kAnchorReach = 0.01f;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
 
@@ -55,11 +58,19 @@ bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anc
 SkinStepper::SkinStepper(const Skin& skin)
     : skin_(&skin),
       surface_(skin.topology().makeStepper()),
-      contact_({skin.blocks().begin(), skin.blocks().end()}) {
+      contact_({skin.blocks().begin(), skin.blocks().end()}, skin.sense()),
+      anchorContact_({skin.blocks().begin(), skin.blocks().end()}, skin.sense(),
+                     FleshContact::Role::anchors) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
+  if (skin.sense()) {
+    nextCarried_.resize(skin.topology().storage());
+    ignoredVelocity_.resize(skin.topology().storage());
+    ignoredSurroundings_.resize(skin.topology().storage());
+  }
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
   const std::string& integrator = skin.settings().integrator;
   if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
+  if (skin.sense() && !ode_) contact_.shareMotions(anchorContact_);
   if (integrator == "auto" && skin.coarse()) {
     coarse_ = std::make_unique<SkinStepper>(*skin.coarse());
     prolongation_ = Prolongation(skin.coarse()->layout(), skin.layout());
@@ -103,7 +114,8 @@ void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
   const std::size_t storage = skin_->topology().storage();
   state.velocity.resize(storage);
   state.surroundings.resize(storage);
-  skin_->placeAnchors(pose, scratch_, state.surroundings.anchor);
+  placeAnchors(pose, state.surroundings.anchor);
+  state.surroundings.carried = nextCarried_;
   SkinStats ignored;
   settle(pose, skin_->settings().interval_s, state, ignored);
   if (coarse_) {
@@ -159,11 +171,23 @@ void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinStat
   watch.lap(stats.other_s);
 }
 
+// Where the strands' inner ends are. On imported figures joints carry some of them into flesh: they
+// stay on its surface then, so that no strand pulls the skin against flesh without end.
+void SkinStepper::placeAnchors(const SkinPose& pose, VectorArray& anchor) {
+  skin_->placeAnchors(pose, scratch_, anchor);
+  if (!skin_->sense()) return;
+  nextCarried_ = anchor;
+  ignoredSurroundings_.carried = anchor;
+  anchorContact_.project(*pose.field, skin_->points(),
+                         kAnchorReach * static_cast<float>(skin_->size_m()), 0.f, anchor,
+                         ignoredVelocity_, ignoredSurroundings_);
+}
+
 // Where anchors and fixed points go during the interval.
 void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& state,
                            SkinStats& stats) {
   PointSurroundings& around = state.surroundings;
-  skin_->placeAnchors(pose, scratch_, nextAnchor_);
+  placeAnchors(pose, nextAnchor_);
   const auto rate = static_cast<float>(1 / duration_s);
   const float way = followAnchors(around.anchor, nextAnchor_, rate,
                                   ode_ || coarse_ ? nullptr : &coefficients_.carried,
@@ -173,6 +197,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
     // A posture jump: the skin jumps with the flesh and starts anew from there.
     carrySkin(*skin_, pose, state);
     around.anchor = nextAnchor_;
+    around.carried = nextCarried_;
     around.anchorVelocity.fill(0.f);
     around.normal.fill(0.f);
     state.carrierVelocity.fill(0.f);
@@ -213,7 +238,11 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
                          SkinStats& stats) {
   repair(pose, state, stats);
   skin_->placeFixed(pose, scratch_, state.position);
-  if (state.ready) std::swap(state.surroundings.anchor, nextAnchor_);
+  if (state.ready) {
+    std::swap(state.surroundings.anchor, nextAnchor_);
+    std::swap(state.surroundings.carried, nextCarried_);
+  }
+  if (!skin_->points().slideLimit.empty()) limitSlide(state);
   skin_->topology().complete(state.position);
   // More than the way that the fastest point goes until the next test.
   const float reach = 1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) +
@@ -228,6 +257,30 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
                          state.position, state.velocity, state.surroundings,
                          static_cast<float>(duration_s));
   skin_->topology().complete(state.position);
+}
+
+// Tissue gives way only so far, however hard a body is shaken: points that are farther from their
+// anchors come back to the limit and stop moving away.
+void SkinStepper::limitSlide(SkinState& state) const {
+  const FloatArray& limit = skin_->points().slideLimit;
+  const VectorArray &anchor = state.surroundings.anchor,
+                    &anchorVelocity = state.surroundings.anchorVelocity;
+  VectorArray &r = state.position, &v = state.velocity;
+  for (std::size_t k = 0; k < limit.size(); ++k) {
+    const float dx = r.x[k] - anchor.x[k], dy = r.y[k] - anchor.y[k], dz = r.z[k] - anchor.z[k];
+    const float squared = dx * dx + dy * dy + dz * dz;
+    if (squared <= limit[k] * limit[k]) continue;
+    const float scale = limit[k] / std::sqrt(squared);
+    r.x[k] = anchor.x[k] + scale * dx;
+    r.y[k] = anchor.y[k] + scale * dy;
+    r.z[k] = anchor.z[k] + scale * dz;
+    const float away = dx * (v.x[k] - anchorVelocity.x[k]) + dy * (v.y[k] - anchorVelocity.y[k]) +
+                       dz * (v.z[k] - anchorVelocity.z[k]);
+    if (away <= 0) continue;
+    v.x[k] -= away / squared * dx;
+    v.y[k] -= away / squared * dy;
+    v.z[k] -= away / squared * dz;
+  }
 }
 
 // No state leaves a step with a number that is not finite or a speed that no body has: such points

@@ -27,18 +27,21 @@ class SkinStepper {
   void odeInterval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
                    SkinStats& stats);
   void rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
+  void placeAnchors(const SkinPose& pose, VectorArray& anchor);
   int chooseStep(double duration_s);
   void leapfrog(int steps, SkinState& state, SkinStats& stats);
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void settle(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
+  void limitSlide(SkinState& state) const;
   void repair(const SkinPose& pose, SkinState& state, SkinStats& stats);
 
   const Skin* skin_;
   StepCoefficients coefficients_;
   std::unique_ptr<SurfaceStepper> surface_;
-  FleshContact contact_;
+  FleshContact contact_, anchorContact_;
   SelfContact selfContact_;
-  VectorArray nextAnchor_, target_;
+  VectorArray nextAnchor_, nextCarried_, target_, ignoredVelocity_;
+  PointSurroundings ignoredSurroundings_;
   CarryScratch scratch_;
   std::unique_ptr<OdeSkin> ode_;
 
