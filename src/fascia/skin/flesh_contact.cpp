@@ -36,9 +36,11 @@ struct BlockTest {
   ContactLanes& lanes;
   std::span<std::int32_t> nearby;  // scratch for as many as the field has solids
   std::span<float> gaps = {};      // per solid: no point is nearer than this; updated by visits
-  const std::uint32_t* felt = nullptr;      // per solid: which points feel it; null: all do
-  const std::uint32_t* yielding = nullptr;  // per solid: see FleshSense
-  std::span<float> yields = {};             // scratch: per solid and point
+  const std::uint32_t* felt = nullptr;        // per solid: which points feel it; null: all do
+  const std::uint32_t* yielding = nullptr;    // per solid: see FleshSense
+  std::span<float> yields = {};               // scratch: per solid and point; empty: none known
+  std::uint32_t* deep = nullptr;              // per solid: written with the yields
+  const std::uint32_t* overlooked = nullptr;  // per solid: points that do not feel it now
   std::size_t nearbyCount = 0;
 
   bool findSolids(const BlockBox& box, std::span<const Box> boxes, float reach) {
@@ -70,17 +72,20 @@ struct BlockTest {
   // What a solid is to points that do not feel it, or yield to it: farther away. Returns the most
   // by which it was moved away from a point that feels it.
   float soften(std::size_t solid) {
+    const std::uint32_t feeling = felt[solid] & ~(overlooked ? overlooked[solid] : 0);
+    const std::uint32_t yielded = yields.empty() ? 0 : yielding[solid];
+    if (feeling == ~std::uint32_t{0} && yielded == 0) return 0;
     const float* yield = yieldsOf(solid);
     float most = 0;
     for (std::size_t l = 0; l < block.count; ++l) {
-      if (!(felt[solid] >> l & 1u)) {
+      if (!(feeling >> l & 1u)) {
         lanes.distance[l] = kFarAway;
-      } else if (yielding[solid] >> l & 1u) {
+      } else if (yielded >> l & 1u) {
         lanes.distance[l] += yield[l];
         most = std::max(most, yield[l]);
       }
     }
-    return most;
+    return overlooked && overlooked[solid] != 0 ? kFarAway : most;  // felt again at any time
   }
 
   // How far each point yields to the nearby solids, see FleshSense.
@@ -176,7 +181,8 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
   const std::size_t solids = boxes_.size();
   const std::size_t tasks = (blocks_.size() + kBlocksPerTask - 1) / kBlocksPerTask;
   nearby_.resize(tasks * solids);
-  const std::size_t yieldsPerTask = sense_ ? solids * PointBlock::kCapacity : 0;
+  const std::size_t yieldsPerTask = sense_ && !anchors_ ? solids * PointBlock::kCapacity : 0;
+  if (role_ == Role::anchors) deep_.assign(blocks_.size() * solids, 0);
   yields_.resize(tasks * yieldsPerTask);
   parallelFor(tasks, [&](std::size_t t) {
     ContactLanes lanes{};
@@ -194,14 +200,18 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
       }
       BlockTest test{field, blocks_[b], lanes, scratch, gaps};
       if (sense_) {
-        test.felt = sense_->felt.data() + b * solids;
-        test.yielding = sense_->yielding.data() + b * solids;
-        test.yields = std::span(yields_).subspan(t * yieldsPerTask, yieldsPerTask);
+        const std::size_t first = b * solids;
+        test.felt = (role_ == Role::anchors ? sense_->yielding : sense_->felt).data() + first;
+        test.yielding = sense_->yielding.data() + first;
+        if (anchors_) test.overlooked = anchors_->deep_.data() + first;
+        if (role_ == Role::anchors) test.deep = deep_.data() + first;
+        if (yieldsPerTask > 0)
+          test.yields = std::span(yields_).subspan(t * yieldsPerTask, yieldsPerTask);
       }
       float searched = reach_m, pushed = 0;
       bool any = test.findSolids(box, boxes_, searched);
       for (int search = 0; any && search < kSearches; ++search) {
-        if (sense_) test.findYields(around.carried, sense_->yield_m, role_);
+        if (yieldsPerTask > 0) test.findYields(around.carried, sense_->yield_m, role_);
         pushed += test.leaveSolids(kPasses);
         if (kPushMargin * pushed <= searched) break;
         // Pushed so far that solids beyond the search may have come near.
@@ -240,8 +250,8 @@ void FleshContact::followSolids(const Field& field) {
   const std::size_t solids = boxes_.size();
   const bool first = motions_.size() != solids;
   if (first) gaps_.assign(blocks_.size() * solids, kUnknown);
-  if (motionsOf_) {
-    motions_ = motionsOf_->motions_;
+  if (anchors_) {
+    motions_ = anchors_->motions_;
     return;
   }
   if (first) {

@@ -37,8 +37,9 @@ class FleshContact {
   enum class Role { points, anchors };
   explicit FleshContact(std::vector<PointBlock> blocks, const FleshSense* sense = nullptr,
                         Role role = Role::points);
-  // Solids' motions are taken from `other`, which is always asked first in the same pose.
-  void shareMotions(const FleshContact& other) { motionsOf_ = &other; }
+  // Takes from the anchors' contact what it found out in the same pose, just before: how solids
+  // moved, and which points are carried too deep into them to feel them.
+  void follow(const FleshContact& anchors) { anchors_ = &anchors; }
 
   struct Result {
     float maxCorrection_m = 0;
@@ -68,7 +69,8 @@ class FleshContact {
   std::vector<PointBlock> blocks_;
   const FleshSense* sense_ = nullptr;
   Role role_ = Role::points;
-  const FleshContact* motionsOf_ = nullptr;
+  const FleshContact* anchors_ = nullptr;
+  std::vector<std::uint32_t> deep_;  // like FleshSense::yielding: those beyond their yield now
   std::vector<Result> results_;
   std::vector<Box> boxes_;
   std::vector<std::int32_t> nearby_;  // per task: as many as there are solids

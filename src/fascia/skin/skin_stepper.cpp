@@ -22,6 +22,8 @@ constexpr double kJump = 0.2;
 // Solids within this share of the skin's size of an anchor are tested at once: more than most
 // pushes need, and few solids more.
 constexpr float kAnchorReach = 0.01f;
+// Points that may slide only so far need no wider one, however hard a body is shaken.
+constexpr float kSlidingReach = 0.02f;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
 
@@ -70,7 +72,7 @@ SkinStepper::SkinStepper(const Skin& skin)
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
   const std::string& integrator = skin.settings().integrator;
   if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
-  if (skin.sense() && !ode_) contact_.shareMotions(anchorContact_);
+  if (skin.sense() && !ode_) contact_.follow(anchorContact_);
   if (integrator == "auto" && skin.coarse()) {
     coarse_ = std::make_unique<SkinStepper>(*skin.coarse());
     prolongation_ = Prolongation(skin.coarse()->layout(), skin.layout());
@@ -245,8 +247,10 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   if (!skin_->points().slideLimit.empty()) limitSlide(state);
   skin_->topology().complete(state.position);
   // More than the way that the fastest point goes until the next test.
-  const float reach = 1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) +
-                      0.005f * static_cast<float>(skin_->size_m());
+  const auto size = static_cast<float>(skin_->size_m());
+  const float reach =
+      std::min(1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) + 0.005f * size,
+               skin_->points().slideLimit.empty() ? size : kSlidingReach * size);
   state.maxSpeed_m_per_s = contact_
                                .project(*pose.field, skin_->points(), reach,
                                         static_cast<float>(skin_->contactResponse().restitution),
