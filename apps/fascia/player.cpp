@@ -58,33 +58,36 @@ void Player::seek(double time_s) {
   normals_.compute(skin_.positions, skin_.normals);
 }
 
-Box motionReach(const Character& character, int motion) {
+Reach motionReach(const Character& character, int motion) {
   const double duration_s =
       motion < 0 ? 0 : character.motion(static_cast<std::size_t>(motion)).duration_s;
-  // An imported rig's joints are no measure: handles and targets lie anywhere.
-  const Layers layers{!hasRig(character), true, true};
   std::optional<BlendedSkin> blended;
   if (hasRig(character)) blended.emplace(character);
   CharacterState state;
-  TriangleMesh surface;
-  Box box;
+  std::vector<Eigen::Vector3f> surface;
+  Reach reach;
   for (int i = 0; i <= kReachSamples; ++i) {
     state.time_s = duration_s * i / kReachSamples;
     poseLayers(character, motion, false, state);
-    if (blended) blended->compute(state, surface.positions);
-    box.add(visibleBounds(state, surface, layers));
+    if (blended) {
+      blended->compute(state, surface);
+      for (const Eigen::Vector3f& p : surface) reach.add(p.cast<double>());
+    } else {
+      reach.add(visibleBounds(state, {}, {true, true, true}));
+    }
   }
-  return box;
+  return reach;
 }
 
-double floorHeight(const Character& character, const Box& reach) {
+double floorHeight(const Character& character, const Reach& reach) {
   if (!hasRig(character) || reach.empty()) return 0;
+  const double lowest_m = reach.box().low.y();
   Box rest;
   for (const Eigen::Vector3f& p : character.def().rig->model->points_m) rest.add(p.cast<double>());
   if (rest.empty()) return 0;
   const double tolerance_m = kOffTheFloor * rest.size().maxCoeff();
   const double feet_m = std::abs(rest.low.y()) < tolerance_m ? 0 : rest.low.y();
-  return reach.low.y() < feet_m - tolerance_m ? reach.low.y() : feet_m;
+  return lowest_m < feet_m - tolerance_m ? lowest_m : feet_m;
 }
 
 }  // namespace fascia

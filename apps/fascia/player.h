@@ -6,6 +6,7 @@
 #include <fascia/character/recording.h>
 #include <fascia/io/welded_normals.h>
 #include <fascia/render/blended_skin.h>
+#include <fascia/render/camera.h>
 #include <fascia/render/crease_normals.h>
 
 namespace fascia {
@@ -37,10 +38,10 @@ class Player {
 // Everything that flesh, ornaments and an imported surface reach in the course of a motion (-1: the
 // rest posture). It does not depend on what part of it is simulated: a camera that frames it shows
 // a picture, a video and a cache from the same place.
-Box motionReach(const Character& character, int motion);
+Reach motionReach(const Character& character, int motion);
 
 // Where the floor belongs: at 0, or below what stands or moves deeper, or under an imported
 // character whose file has its feet elsewhere.
-double floorHeight(const Character& character, const Box& reach);
+double floorHeight(const Character& character, const Reach& reach);
 
 }  // namespace fascia

@@ -106,9 +106,11 @@ class Shooting {
     options_.aspect = static_cast<double>(size_.width) / size_.height;
     options_.skin_texture = toPixels(footage.texture);
     options_.rig_surface = rigSurface(footage.character, console);
-    options_.framing =
+    reach_ =
         motionReach(footage.character, motion.empty() ? -1 : footage.character.findMotion(motion));
-    options_.ground_height_m = floorHeight(footage.character, options_.framing);
+    options_.framing = reach_.box();
+    if (options_.rig_surface) options_.reach = &reach_;
+    options_.ground_height_m = floorHeight(footage.character, reach_);
   }
 
   const Image& at(double time_s) {
@@ -127,6 +129,7 @@ class Shooting {
   const Footage& footage_;
   Player player_;
   Size size_;
+  Reach reach_;
   SceneOptions options_;
   Renderer renderer_;
   Pixels pixels_;

@@ -11,7 +11,7 @@ using testing::IsEmpty;
 
 TEST_F(Cli, HelpOfEveryCommandTeachesByExample) {
   const std::vector<std::vector<std::string>> commands = {
-      {}, {"bake"}, {"render"}, {"check"}, {"info"}, {"bench"}, {"bench", "paper"}};
+      {}, {"flesh"}, {"bake"}, {"render"}, {"check"}, {"info"}, {"bench"}, {"bench", "paper"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = run(command);
@@ -31,11 +31,14 @@ TEST_F(Cli, BadUsageEndsWithTwoAndSaysWhatIsWrong) {
       {{"boil"}, "boil"},
       {{"bake"}, "CHARACTER"},
       {{"bake", "ball.fascia.json"}, "--output"},
-      {{"bake", "ball.fascia.json", "-o", "a.obj"}, ".glb, .pc2, .fcache"},
+      {{"bake", "ball.fascia.json", "-o", "a.obj"}, ".glb, .pc2, .mdd, .fcache"},
       {{"bake", "ball.fascia.json", "-o", "a.glb", "--grid", "64"}, "WIDTHxHEIGHT"},
       {{"bake", "ball.fascia.json", "-o", "a.glb", "--grid", "64x16x2"}, "WIDTHxHEIGHT"},
       {{"bake", "ball.fascia.json", "-o", "a.glb", "--grid", "4x16"}, "[8, 4096]"},
       {{"bake", "ball.fascia.json", "-o", "a.glb", "--fps", "0"}, "--fps"},
+      {{"bake", "ball.fascia.json", "-o", "a.glb", "--as", "magic"}, "bones"},
+      {{"bake", "ball.fascia.json", "-o", "a.glb", "--influences", "5"}, "--influences"},
+      {{"bake", "ball.fascia.json", "-o", "a.glb", "--helpers", "-1"}, "--helpers"},
       {{"bake", "ball.fascia.json", "-o", "a.glb", "--integrator", "magic"}, "verlet"},
       {{"bake", "ball.fascia.json", "-o", "a.glb", "--threads", "-1"}, "--threads"},
       {{"render", "ball.fascia.json", "-o", "a.gif"}, ".png, .mp4"},

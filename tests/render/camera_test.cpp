@@ -90,5 +90,62 @@ TEST(Camera, EmptyBoxStillGivesACamera) {
   EXPECT_TRUE(frameBox(CameraSpec{}, Box{}, 1).eye_m.allFinite());
 }
 
+// Where a cloud of points falls in the picture, in [-1, 1] if all of it is in view.
+Box seenBy(const Camera& camera, std::span<const Vec3> points, double aspect) {
+  const Eigen::Matrix4f clip = clipFromView(camera, aspect, 0.01, 1000) * viewFromWorld(camera);
+  Box seen;
+  for (const Vec3& p : points) {
+    const Eigen::Vector4f c = clip * p.homogeneous().cast<float>();
+    EXPECT_GT(c.w(), 0);
+    seen.add(Vec3(c.x() / c.w(), c.y() / c.w(), 0));
+  }
+  return seen;
+}
+
+// An arc that fills little of its box.
+std::vector<Vec3> arc() {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 200; ++i) {
+    const double a = kPi * i / 200;
+    points.emplace_back(2 * std::cos(a), 1 + 2 * std::sin(a), std::cos(3 * a));
+  }
+  return points;
+}
+
+TEST(Reach, FillsThePictureFromEverySide) {
+  const std::vector<Vec3> points = arc();
+  Reach reach;
+  for (const Vec3& p : points) reach.add(p);
+  for (const char* view : {"front", "side", "three-quarter", "back", "top", "az=200,el=-40"})
+    for (const double aspect : {0.5, 1.0, 2.0}) {
+      const Camera camera = frameReach(parseCamera(view), reach, aspect);
+      const Box seen = seenBy(camera, points, aspect);
+      const double widest = std::max(seen.high.x(), seen.high.y());
+      EXPECT_LT(widest, 1) << view;
+      EXPECT_GT(widest, 0.9) << view;
+      EXPECT_NEAR(seen.center().x(), 0, 0.02) << view;
+      EXPECT_NEAR(seen.center().y(), 0, 0.02) << view;
+    }
+}
+
+TEST(Reach, IsTighterThanItsBox) {
+  Reach reach;
+  for (const Vec3& p : arc()) reach.add(p);
+  const CameraSpec spec = parseCamera("three-quarter");
+  const Camera tight = frameReach(spec, reach, 1), loose = frameBox(spec, reach.box(), 1);
+  EXPECT_LT((tight.eye_m - tight.target_m).norm(), 0.95 * (loose.eye_m - loose.target_m).norm());
+}
+
+TEST(Reach, OfABoxIsTheBox) {
+  const Box box{Vec3(-1, 0, 2), Vec3(3, 1, 5)};
+  Reach reach;
+  reach.add(box);
+  reach.add(Vec3(std::nan(""), 0, 0));
+  EXPECT_EQ(reach.box().low, box.low);
+  EXPECT_EQ(reach.box().high, box.high);
+  EXPECT_TRUE(Reach().empty());
+  EXPECT_TRUE(Reach().extremes().empty());
+}
+
 }  // namespace
 }  // namespace fascia

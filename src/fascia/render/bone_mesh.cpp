@@ -6,6 +6,8 @@
 #include <string_view>
 #include <unordered_set>
 
+#include <fascia/rig/blend_skinning.h>
+
 namespace fascia {
 namespace {
 
@@ -92,15 +94,11 @@ double ballRadius(const Skeleton& skeleton) {
   return bones > 0 && length_m > 0 ? kBallToBone * length_m / bones : 0.03;
 }
 
-// Which of the skeleton's joints carry points of the rig's surface.
+// Which of the skeleton's joints carry points of the rig's surface. Traces of weight do not count:
+// files have them where nobody meant them.
 std::vector<char> carriers(const Skeleton& skeleton, const RiggedModel& rig) {
-  std::vector<char> carries(rig.joints.size(), 0);
-  for (const PointWeights& weights : rig.weights)
-    for (std::size_t k = 0; k < PointWeights::kMost; ++k)
-      if (weights.weight[k] > 0) carries[weights.joint[k]] = 1;
   std::unordered_set<std::string_view> names;
-  for (std::size_t j = 0; j < carries.size(); ++j)
-    if (carries[j]) names.insert(rig.joints[j].name);
+  for (const std::uint32_t joint : dominantJoints(rig)) names.insert(rig.joints[joint].name);
   std::vector<char> out(skeleton.jointCount());
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = names.contains(skeleton.joint(JointId(static_cast<std::int64_t>(i))).name);

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include <fascia/math/types.h>
 
@@ -38,6 +41,26 @@ struct CameraSpec {
 // "side,dist=4,fov=40", "eye=1,2,3;target=0,1,0". Angles in degrees, lengths in metres.
 // Throws Error that lists every fault and says what is allowed.
 CameraSpec parseCamera(std::string_view text);
+
+// What points reach, seen from many sides: tighter than a box around what lies or stands aslant.
+class Reach {
+ public:
+  void add(const Vec3& point);  // ignored unless finite
+  void add(const Box& box);
+  bool empty() const { return box_.empty(); }
+  const Box& box() const { return box_; }
+  // The farthest points in each of the directions looked at; some repeat.
+  std::span<const Vec3> extremes() const;
+
+ private:
+  static constexpr std::size_t kDirections = 98;  // of a cube's lattice: 13° apart or less
+  Box box_;
+  std::array<Vec3, kDirections> extremes_;
+};
+
+// The camera of a spec such that all that is reached (over the whole motion) fits a picture of this
+// aspect, and stands in its middle.
+Camera frameReach(const CameraSpec& spec, const Reach& reach, double aspect);
 
 // The camera of a spec such that `bounds` (over the whole motion) fits a picture of this aspect.
 Camera frameBox(const CameraSpec& spec, const Box& bounds, double aspect);

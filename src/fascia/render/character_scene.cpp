@@ -203,7 +203,10 @@ Scene buildScene(const Character& character, const CharacterState& state, const 
   Scene scene;
   const Layers& layers = options.layers;
   const Box visible = visibleBounds(state, skin, layers);
-  const Box framing = options.framing.empty() ? visible : options.framing;
+  const bool reached = options.reach && !options.reach->empty();
+  const Box framing = reached                   ? options.reach->box()
+                      : options.framing.empty() ? visible
+                                                : options.framing;
   const double height_m = framing.empty() ? 1.0 : framing.size().maxCoeff();
 
   if (layers.skeleton) addBones(character, state, layers.muscle, scene);
@@ -215,7 +218,8 @@ Scene buildScene(const Character& character, const CharacterState& state, const 
     }
   }
   if (options.ground) scene.drawables.push_back(groundDisc(framing, options.ground_height_m));
-  scene.camera = frameBox(options.camera, framing, options.aspect);
+  scene.camera = reached ? frameReach(options.camera, *options.reach, options.aspect)
+                         : frameBox(options.camera, framing, options.aspect);
   scene.studio.azimuth_rad = studioAzimuth(scene.camera);
   return scene;
 }

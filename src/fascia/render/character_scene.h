@@ -24,6 +24,7 @@ struct SceneOptions {
   double ground_height_m = 0;  // where characters stand
   CameraSpec camera;
   Box framing;  // what the camera frames, e.g. over a whole motion; empty = this frame
+  const Reach* reach = nullptr;  // instead of `framing`, more tightly; must outlive the call
   double aspect = 16.0 / 9;
   int solid_detail = 40;  // segments around a muscle or ornament
 };

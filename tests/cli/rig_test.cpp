@@ -1,0 +1,167 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include <fascia/io/cache.h>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+#include "rigged.h"
+
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+// A scratch folder with a rigged file and a character on it.
+class CliRig : public Cli {
+ protected:
+  CliRig() {
+    write("tube.gltf", riggedGltf());
+    write("tube.fascia.json", riggedCharacter());
+  }
+
+  // The character's text with one piece replaced.
+  void rewrite(const std::string& from, const std::string& to) {
+    std::string text = riggedCharacter();
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    write("tube.fascia.json", text.replace(at, from.size(), to));
+  }
+};
+
+TEST_F(CliRig, CheckAcceptsACharacterOnARig) {
+  const Outcome outcome = run({"check", "tube.fascia.json"});
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+}
+
+TEST_F(CliRig, RigOutsideOfTheFolderIsRefusedWithALine) {
+  const std::string outside = (folder_ / "tube.gltf").string();
+  for (const std::string& name :
+       {std::string("../tube.gltf"), outside, std::string("a/../x.glb")}) {
+    rewrite("\"tube.gltf\"", '"' + name + '"');
+    const Outcome outcome = run({"check", "tube.fascia.json"});
+    EXPECT_EQ(outcome.exitCode, 1) << name;
+    EXPECT_THAT(outcome.err, HasSubstr("tube.fascia.json:4: /rig/file: the rig must be named by a "
+                                       "path inside the character's folder"));
+  }
+}
+
+TEST_F(CliRig, LinkOutOfTheFolderIsRefused) {
+  std::filesystem::create_directory(folder_ / "inner");
+  write("inner/tube.fascia.json", riggedCharacter());
+  std::filesystem::create_symlink(folder_ / "tube.gltf", folder_ / "inner/tube.gltf");
+  const Outcome outcome = run({"check", "inner/tube.fascia.json"});
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("leads out of the character's folder"));
+}
+
+TEST_F(CliRig, MissingAndBrokenRigsAreNamed) {
+  rewrite("tube.gltf", "tub.gltf");
+  EXPECT_THAT(run({"check", "tube.fascia.json"}).err,
+              HasSubstr("tube.fascia.json:4: /rig/file: the rig is missing: tub.gltf"));
+  rewrite("tube.gltf", "broken.gltf");
+  write("broken.gltf", "{\"asset\": ");
+  const Outcome broken = run({"info", "tube.fascia.json"});
+  EXPECT_EQ(broken.exitCode, 1);
+  EXPECT_THAT(broken.err, HasSubstr("tube.fascia.json:4: /rig/file: the rig "));
+  EXPECT_THAT(broken.err, HasSubstr("broken.gltf"));
+}
+
+TEST_F(CliRig, InfoTellsOfTheRigBareOrInACharacter) {
+  for (const char* file : {"tube.gltf", "tube.fascia.json"}) {
+    const Outcome outcome = run({"info", file, "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const nlohmann::json rig = outcome.json();
+    EXPECT_EQ(rig.at("rig_joints"), 2);
+    EXPECT_EQ(rig.at("rig_points"), 112);
+    EXPECT_EQ(rig.at("rig_triangles"), 220);
+    EXPECT_EQ(rig.at("rig_pieces"), 1);
+    EXPECT_NEAR(rig.at("rig_height_m"), 1, 1e-6);
+    EXPECT_EQ(rig.at("rig_materials").at(0).at("name"), "rubber");
+    EXPECT_EQ(rig.at("motions").at(0).at("name"), "bend");
+    EXPECT_NEAR(rig.at("motions").at(0).at("duration_s"), 0.5, 0.02);
+  }
+}
+
+TEST_F(CliRig, UnknownMotionNamesTheRigs) {
+  const Outcome outcome = run({"bake", "tube.fascia.json", "--motion", "bent", "-o", "a.fcache"});
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("bend, sway"));
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'bend'?"));
+}
+
+TEST_F(CliRig, CacheHoldsTheRig) {
+  const Outcome outcome = run({"bake", "tube.fascia.json", "--motion", "sway", "-o", "a.fcache"});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  std::filesystem::remove(folder_ / "tube.gltf");
+  const fascia::Cache cache = fascia::readCache((folder_ / "a.fcache").string());
+  ASSERT_TRUE(cache.def.rig && cache.def.rig->model);
+  EXPECT_EQ(cache.def.rig->model->points_m.size(), 112u);
+  EXPECT_EQ(cache.recording.motion, "sway");
+  EXPECT_EQ(cache.recording.skin.positions.size(), cache.def.rig->model->vertices.size());
+  EXPECT_EQ(run({"info", "a.fcache"}).exitCode, 0);
+}
+
+// Motions, joints and materials of the file stay; how faithful the bake is gets told.
+TEST_F(CliRig, BakesBackIntoItsFileInThreeWays) {
+  for (const std::string as : {"bones", "morphs", "cache"}) {
+    const Outcome outcome = run({"bake", "tube.fascia.json", "--motion", "bend", "--as", as,
+                                 "--helpers", "3", "--targets", "4", "-o", as + ".glb", "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_THAT(content(as + ".glb"), StartsWith("glTF"));
+    const nlohmann::json bake = outcome.json().at("bakes").at(0);
+    EXPECT_LE(bake.at("rms_mm"), bake.at("max_mm"));
+    EXPECT_LT(bake.at("rms_percent"), 2);
+    EXPECT_NEAR(bake.at("rms_percent"), 0.1 * bake.at("rms_mm").get<double>(), 1e-6);  // of 1 m
+  }
+  for (const char* file : {"cache.pc2", "cache.mdd"}) EXPECT_TRUE(exists(file)) << file;
+  const Outcome again = run({"info", "bones.glb", "--json"});
+  ASSERT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_EQ(again.json().at("rig_joints"), 2 + 3);
+  EXPECT_EQ(again.json().at("rig_materials").at(0).at("name"), "rubber");
+  EXPECT_EQ(again.json().at("motions").size(), 2u);
+}
+
+TEST_F(CliRig, SkinsOnGridsHaveNoFileToGoBackTo) {
+  const Outcome outcome = run({"bake", "ball.fascia.json", "--as", "bones", "-o", "a.glb"});
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("needs a character with a rig"));
+  EXPECT_FALSE(exists("a.glb"));
+}
+
+TEST_F(CliRig, MotionCaptureNeedsAMapWhereNamesSayNothing) {
+  write("nod.bvh", smallBvh());
+  write("pairs.txt", "Root = lower\nTip = upper\n");
+  const Outcome mapped = run({"bake", "tube.fascia.json", "--motion", "nod.bvh", "--joint-map",
+                              "pairs.txt", "-o", "a.fcache", "--verbose"});
+  ASSERT_EQ(mapped.exitCode, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("drives 2 of the rig's 2"));
+  EXPECT_THAT(mapped.out, HasSubstr("Tip = upper"));
+  EXPECT_EQ(fascia::readCache((folder_ / "a.fcache").string()).recording.motion, "nod");
+  write("wrong.txt", "Root = lower\nTip = uper\n");
+  const Outcome wrong = run({"bake", "tube.fascia.json", "--motion", "nod.bvh", "--joint-map",
+                             "wrong.txt", "-o", "b.fcache"});
+  EXPECT_EQ(wrong.exitCode, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("uper"));
+  EXPECT_FALSE(exists("b.fcache"));
+}
+
+TEST_F(CliRig, InfoShowsAJointMapToEdit) {
+  write("nod.bvh", smallBvh());
+  write("pairs.txt", "Root = lower\nTip = upper\n");
+  const Outcome outcome =
+      run({"info", "tube.gltf", "--motion", "nod.bvh", "--joint-map", "pairs.txt"});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Tip = upper"));
+}
+
+TEST_F(CliRig, MotionCaptureNeedsARig) {
+  write("nod.bvh", smallBvh());
+  const Outcome outcome = run({"bake", "ball.fascia.json", "--motion", "nod.bvh", "-o", "a.pc2"});
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("needs a character with a rig"));
+}
+
+}  // namespace
