@@ -107,11 +107,6 @@ void MeshSkinBuilder::build() {
 
 bool MeshSkinBuilder::checkDef() const {
   bool ok = true;
-  if (base_.flesh.solidCount() == 0) {
-    report_.error("", "found a skin, but no solids for it to lie on",
-                  "run 'fascia flesh' on the rig, or add at least one solid");
-    ok = false;
-  }
   if (def_.points) {
     if (!def_.points->anchor.empty() || !def_.points->rest_position_m.empty()) {
       report_.error("/points", "found anchors or rest positions",
@@ -150,12 +145,13 @@ bool MeshSkinBuilder::findJoints() {
 // through each other and through the body in many a clip; a point that had to leave every solid
 // that comes over it would be torn off its place. Other parts of the body are for self-contact.
 void MeshSkinBuilder::findFelt() {
+  felt_.resize(rig_.points_m.size());
+  if (base_.flesh.solidCount() == 0) return;  // all skin and bones: carried by joints alone
   std::vector<std::vector<SolidId>> ofJoint(base_.skeleton.jointCount());
   for (std::size_t s = 0; s < base_.flesh.solidCount(); ++s) {
     const SolidId solid(static_cast<std::int64_t>(s));
     ofJoint[base_.flesh.joint(solid).index()].push_back(solid);
   }
-  felt_.resize(rig_.points_m.size());
   for (std::size_t p = 0; p < felt_.size(); ++p) {
     for (std::size_t i = 0; i < PointWeights::kMost; ++i) {
       if (rig_.weights[p].weight[i] < kFeltWeight) continue;
