@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 #include <map>
+#include <string_view>
 
 #include <fascia/base/error.h>
 #include <fascia/io/assimp_import.h>
@@ -71,8 +72,8 @@ class Converter {
   const RiggedModel& model_;
   GltfDocument document_;
   Json::List nodes_, meshes_, skins_, materials_, textures_, animations_;
-  std::vector<int> top_;  // nodes of the scene
-  std::map<std::vector<std::uint8_t>, int> textureOf_;
+  std::vector<int> top_;                       // nodes of the scene
+  std::map<std::string_view, int> textureOf_;  // by the picture's bytes, which the model keeps
 };
 
 void Converter::addJoints() {
@@ -111,7 +112,8 @@ void Converter::addJoints() {
 }
 
 int Converter::textureOf(const std::vector<std::uint8_t>& picture) {
-  const auto [found, isNew] = textureOf_.try_emplace(picture, static_cast<int>(textures_.size()));
+  const std::string_view bytes(reinterpret_cast<const char*>(picture.data()), picture.size());
+  const auto [found, isNew] = textureOf_.try_emplace(bytes, static_cast<int>(textures_.size()));
   if (isNew) {
     Json texture = object();
     texture.set("source", document_.addImage(picture));
