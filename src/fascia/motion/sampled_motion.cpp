@@ -14,9 +14,11 @@ struct Between {
 
 Between between(const SampledMotion& motion, double time_s) {
   const auto count = static_cast<double>(motion.frameCount());
-  double frame = std::isfinite(time_s) ? time_s * motion.rate_hz : 0;
+  double frame = time_s * motion.rate_hz;
+  if (!std::isfinite(frame)) frame = 0;
   if (motion.loop) {
-    frame -= count * std::floor(frame / count);
+    frame = std::fmod(frame, count);
+    if (frame < 0) frame = std::min(frame + count, std::nextafter(count, 0.0));
   } else {
     frame = std::clamp(frame, 0.0, count - 1);
   }
