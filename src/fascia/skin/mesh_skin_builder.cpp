@@ -327,6 +327,7 @@ void MeshSkinBuilder::makeModel() {
     const float natural = gap_[order_[k]];
     skin_.points_.fat[k] = natural > 0 ? std::min(kept * skin_.points_.fat[k], natural) : natural;
   }
+  skin_.points_.carry = static_cast<float>(def_.tissue.carry);
   skin_.points_.slideLimit.resize(elasticCount_);
   for (std::size_t k = 0; k < elasticCount_; ++k)
     skin_.points_.slideLimit[k] =
@@ -373,6 +374,30 @@ void MeshSkinBuilder::carryPoints() {
   skin_.allByJoints_ = JointCarrier(joints_, all);
   skin_.anchorsByJoints_ = JointCarrier(joints_, anchors);
   skin_.fixedByJoints_ = JointCarrier(joints_, fixed);
+  if (def_.fat.bulk_Pa > 0) layFat(all, anchors);
+}
+
+// The fat's volume is measured between where the rest posture puts the skin and its anchors.
+void MeshSkinBuilder::layFat(const std::vector<JointCarrier::Point>& skin,
+                             const std::vector<JointCarrier::Point>& anchors) {
+  const auto placed = [&](const std::vector<JointCarrier::Point>& points) {
+    VectorArray out = skin_.rest_;
+    for (const JointCarrier::Point& p : points) {
+      const Eigen::Vector3f at = p.rest_world.cast<float>();
+      out.x[p.point] = at.x(), out.y[p.point] = at.y(), out.z[p.point] = at.z();
+    }
+    return out;
+  };
+  std::vector<TriangleMembrane::Corners> triangles;
+  for (const auto& t : rig_.triangles)
+    triangles.push_back({storageOf_[t[0]], storageOf_[t[1]], storageOf_[t[2]]});
+  std::vector<SolidId> solid;
+  for (const std::uint32_t p : order_) solid.push_back(covered_[p] ? solid_[p] : SolidId());
+  FatPressureModel model =
+      prepareFatPressure({def_.fat.bulk_Pa, triangles, placed(skin), placed(anchors),
+                          skin_.quantities_[SkinQuantity::fat], solid, skin_.points_});
+  if (!model.layers.empty())
+    skin_.fatPressure_ = std::make_shared<FatPressureModel>(std::move(model));
 }
 
 Skin::Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,

@@ -34,6 +34,8 @@ class MeshSkinBuilder {
   void setQuantities();
   void makeModel();
   void carryPoints();
+  void layFat(const std::vector<JointCarrier::Point>& skin,
+              const std::vector<JointCarrier::Point>& anchors);
   TriangleMembrane makeMembrane() const;
 
   Skin& skin_;

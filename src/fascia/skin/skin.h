@@ -12,6 +12,7 @@
 #include <fascia/flesh/flesh.h>
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/rig/rigged_model.h>
+#include <fascia/skin/fat_pressure.h>
 #include <fascia/skin/flesh_contact.h>
 #include <fascia/skin/grid_topology.h>
 #include <fascia/skin/joint_carrier.h>
@@ -95,6 +96,7 @@ class Skin {
   const Skin* coarse() const { return coarse_.get(); }
   double size_m() const { return size_m_; }  // diagonal of the rest shape's box
   const SelfContactModel* selfContact() const { return selfContact_.get(); }  // may be nullptr
+  const FatPressureModel* fatPressure() const { return fatPressure_.get(); }  // may be nullptr
 
   // The inner ends of a grid's strands, in its solids' matter.
   const TissueAnchors& anchors() const { return anchors_; }
@@ -129,6 +131,7 @@ class Skin {
   double defaultStep_s_ = 0, size_m_ = 0;
   std::vector<std::size_t> fixedPoints_;
   std::shared_ptr<const SelfContactModel> selfContact_;
+  std::shared_ptr<const FatPressureModel> fatPressure_;
   // A grid's points are carried by solids and joints, a mesh's by its joints' weights.
   TissueAnchors anchors_, carriers_;
   std::vector<Fixed> fixed_;

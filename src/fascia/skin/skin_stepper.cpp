@@ -70,6 +70,8 @@ SkinStepper::SkinStepper(const Skin& skin)
     ignoredSurroundings_.resize(skin.topology().storage());
   }
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
+  if (skin.fatPressure())
+    fatPressure_ = FatPressure(*skin.fatPressure(), skin.topology().storage());
   const std::string& integrator = skin.settings().integrator;
   if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
   if (skin.sense() && !ode_) contact_.follow(anchorContact_);
@@ -136,7 +138,7 @@ void SkinStepper::interval(const SkinPose& pose, double duration_s, SkinState& s
   Stopwatch watch;
   surround(pose, duration_s, state, stats);
   watch.lap(stats.other_s);
-  leapfrog(steps, state, stats);
+  leapfrog(steps, duration_s, state, stats);
   watch.lap(stats.forces_s);
   settle(pose, duration_s, state, stats);
   watch.lap(stats.constraints_s);
@@ -223,10 +225,13 @@ int SkinStepper::chooseStep(double duration_s) {
   return steps;
 }
 
-void SkinStepper::leapfrog(int steps, SkinState& state, SkinStats& stats) {
+void SkinStepper::leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats) {
   StepInputs inputs{&skin_->points(), &coefficients_, &state.surroundings, nullptr, {}};
   for (int a = 0; a < 3; ++a)
     inputs.gravity[a] = static_cast<float>(skin_->settings().gravity_m_per_s2[a]);
+  if (skin_->fatPressure())
+    inputs.extraForce = &fatPressure_.press(coefficients_, state.surroundings, duration_s,
+                                            state.position, state.velocity);
   surface_->run(inputs, steps, state.position, state.velocity);
   const double h = coefficients_.step_s;
   stats.steps += static_cast<std::uint64_t>(steps);

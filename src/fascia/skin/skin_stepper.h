@@ -29,7 +29,7 @@ class SkinStepper {
   void rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void placeAnchors(const SkinPose& pose, VectorArray& anchor);
   int chooseStep(double duration_s);
-  void leapfrog(int steps, SkinState& state, SkinStats& stats);
+  void leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats);
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void settle(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void limitSlide(SkinState& state) const;
@@ -40,6 +40,7 @@ class SkinStepper {
   std::unique_ptr<SurfaceStepper> surface_;
   FleshContact contact_, anchorContact_;
   SelfContact selfContact_;
+  FatPressure fatPressure_;
   VectorArray nextAnchor_, nextCarried_, target_, ignoredVelocity_;
   PointSurroundings ignoredSurroundings_;
   CarryScratch scratch_;
