@@ -90,6 +90,9 @@ CodecPtr<SkinTissueDef> tissueCodec() {
               "Pull per metre beyond rest, per square metre")
       .field("damping_Ns_per_m3", &T::damping_Ns_per_m3, numbers({0, 1e6}),
              "Damping along a strand")
+      .field("carry", &T::carry, numbers({0, 1}),
+             "share of the flesh's changes of velocity that the skin takes over at once: 0 shakes "
+             "like jelly, 1 not at all")
       .field("rest_length_m", &T::rest_length_m, optionally(numbers({0, 1})),
              "None: the length at attachment");
   return codec;

@@ -299,6 +299,7 @@ void GridSkinBuilder::makeModel() {
       makePointModel({q, pointAreas(g, skin_.rest_), stiffness,
                       1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(g.pointCount()),
                       points, skin_.fixedPoints_, tied});
+  skin_.points_.carry = static_cast<float>(def_.tissue.carry);
   for (int j = 1; j + 1 < g.rows; ++j)
     for (int i = 0; i < g.columns; i += static_cast<int>(PointBlock::kCapacity))
       skin_.blocks_.push_back(

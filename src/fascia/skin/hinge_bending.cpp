@@ -18,7 +18,7 @@ struct Fold {
   Vec3 edge, toFirst, toSecond;  // p1 − p0, p2 − p0, p3 − p0
   Vec3 normal1, normal2;         // twice the areas long
 
-  Fold(const Hinge& h, const VectorArray& r) {
+  Fold(const FoldEdge& h, const VectorArray& r) {
     const Vec3 p0 = pointAt(r, h.corners[0]);
     edge = pointAt(r, h.corners[1]) - p0;
     toFirst = pointAt(r, h.corners[2]) - p0;
@@ -31,7 +31,7 @@ struct Fold {
   double sine() const { return -edge.norm() * normal1.dot(toSecond); }
   double heightSquared1() const { return normal1.squaredNorm() / edge.squaredNorm(); }
   double heightSquared2() const { return normal2.squaredNorm() / edge.squaredNorm(); }
-  double angleFrom(const Hinge& h) const {
+  double angleFrom(const FoldEdge& h) const {
     return std::atan2(sine() * h.restCosine - cosine() * h.restSine,
                       cosine() * h.restCosine + sine() * h.restSine);
   }
@@ -67,14 +67,15 @@ std::vector<Side> sortedSides(std::span<const Corners> triangles) {
   return sides;
 }
 
-Hinge makeHinge(const Side& a, const Side& b, const VectorArray& rest, const FloatArray& bending) {
-  Hinge h{};
+FoldEdge makeHinge(const Side& a, const Side& b, const VectorArray& rest,
+                   const FloatArray& bending) {
+  FoldEdge h{};
   h.corners = {a.ascending ? a.low : a.high, a.ascending ? a.high : a.low, a.opposite, b.opposite};
   const Fold fold(h, rest);
   const double areas = 0.5 * (fold.normal1.norm() + fold.normal2.norm());
   const double angle = std::atan2(fold.sine(), fold.cosine());
   const double mean = 0.5 * (bending[h.corners[0]] + bending[h.corners[1]]);
-  constexpr double kFloor = Hinge::kSqueezed * Hinge::kSqueezed;
+  constexpr double kFloor = FoldEdge::kSqueezed * FoldEdge::kSqueezed;
   h.stiffness = static_cast<float>(mean * fold.edge.squaredNorm() / areas);
   h.restCosine = static_cast<float>(std::cos(angle));
   h.restSine = static_cast<float>(std::sin(angle));
@@ -86,9 +87,9 @@ Hinge makeHinge(const Side& a, const Side& b, const VectorArray& rest, const Flo
 
 }  // namespace
 
-std::vector<Hinge> makeHinges(std::span<const Corners> triangles, const VectorArray& rest,
-                              const FloatArray& bending) {
-  std::vector<Hinge> hinges;
+std::vector<FoldEdge> makeHinges(std::span<const Corners> triangles, const VectorArray& rest,
+                                 const FloatArray& bending) {
+  std::vector<FoldEdge> hinges;
   if (std::none_of(bending.begin(), bending.end(), [](float k) { return k > 0; })) return hinges;
   const std::vector<Side> sides = sortedSides(triangles);
   for (std::size_t i = 0; i < sides.size();) {
@@ -96,7 +97,7 @@ std::vector<Hinge> makeHinges(std::span<const Corners> triangles, const VectorAr
     while (next < sides.size() && sides[next].sameEdge(sides[i])) ++next;
     // Edges of three and more triangles have no angle.
     if (next == i + 2) {
-      const Hinge h = makeHinge(sides[i], sides[i + 1], rest, bending);
+      const FoldEdge h = makeHinge(sides[i], sides[i + 1], rest, bending);
       if (h.stiffness > 0) hinges.push_back(h);
     }
     i = next;
@@ -104,12 +105,12 @@ std::vector<Hinge> makeHinges(std::span<const Corners> triangles, const VectorAr
   return hinges;
 }
 
-double hingeEnergy(const Hinge& h, const VectorArray& r) {
+double hingeEnergy(const FoldEdge& h, const VectorArray& r) {
   const double angle = Fold(h, r).angleFrom(h);
   return 0.5 * h.stiffness * angle * angle;
 }
 
-void addHingeJacobian(const Hinge& h, const VectorArray& r,
+void addHingeJacobian(const FoldEdge& h, const VectorArray& r,
                       std::vector<Eigen::Triplet<double>>& entries) {
   const Fold fold(h, r);
   if (!(fold.heightSquared1() > h.floor1 && fold.heightSquared2() > h.floor2 &&
@@ -127,7 +128,7 @@ void addHingeJacobian(const Hinge& h, const VectorArray& r,
   }
 }
 
-std::array<Mat3, 4> hingeStiffness(const Hinge& h, const VectorArray& rest) {
+std::array<Mat3, 4> hingeStiffness(const FoldEdge& h, const VectorArray& rest) {
   const std::array<Vec3, 4> gradient = Fold(h, rest).gradient();
   double sum = 0;
   for (const Vec3& g : gradient) sum += g.norm();
@@ -135,7 +136,7 @@ std::array<Mat3, 4> hingeStiffness(const Hinge& h, const VectorArray& rest) {
   for (std::size_t i = 0; i < 4; ++i) {
     const Vec3& g = gradient[i];
     // Heights go down to kSqueezed of the rest shape's.
-    const double scale = h.stiffness * sum / (Hinge::kSqueezed * Hinge::kSqueezed);
+    const double scale = h.stiffness * sum / (FoldEdge::kSqueezed * FoldEdge::kSqueezed);
     stiffness[i] = scale / std::max(g.norm(), 1e-30) * g * g.transpose();
   }
   return stiffness;

@@ -20,7 +20,7 @@ namespace fascia {
 // 1988). The force is −∂ε/∂r until the edge or one of the triangles' heights over it is shorter
 // than kSqueezed of its rest length; from there on it fades, because ∂θ/∂r grows with one over the
 // height.
-struct Hinge {
+struct FoldEdge {
   // The edge's ends p0 and p1, and the corners opposite of it: triangles p0 p1 p2 and p1 p0 p3.
   std::array<std::uint32_t, 4> corners;
   float stiffness;             // k, Nm
@@ -33,15 +33,15 @@ struct Hinge {
 
 // Hinges with stiffness: one per edge that two of the triangles share. `bending` is per point, Nm;
 // empty or all 0 gives none.
-std::vector<Hinge> makeHinges(std::span<const std::array<std::uint32_t, 3>> triangles,
-                              const VectorArray& rest, const FloatArray& bending);
+std::vector<FoldEdge> makeHinges(std::span<const std::array<std::uint32_t, 3>> triangles,
+                                 const VectorArray& rest, const FloatArray& bending);
 
-double hingeEnergy(const Hinge& hinge, const VectorArray& position);  // joule
+double hingeEnergy(const FoldEdge& hinge, const VectorArray& position);  // joule
 // Adds −k ∂θ/∂r ∂θ/∂rᵀ, the negative semi-definite part of ∂f/∂r.
-void addHingeJacobian(const Hinge& hinge, const VectorArray& position,
+void addHingeJacobian(const FoldEdge& hinge, const VectorArray& position,
                       std::vector<Eigen::Triplet<double>>& entries);
 // Blocks K, one per corner, with k ∂θ/∂r ∂θ/∂rᵀ ≼ diag(K) for the rest shape's angles between edges
 // and heights down to kSqueezed of the rest shape's, N/m.
-std::array<Mat3, 4> hingeStiffness(const Hinge& hinge, const VectorArray& rest);
+std::array<Mat3, 4> hingeStiffness(const FoldEdge& hinge, const VectorArray& rest);
 
 }  // namespace fascia

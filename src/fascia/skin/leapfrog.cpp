@@ -56,7 +56,7 @@ void prepareStep(const PointModel& p, const ContactResponse& contact, double h,
     out.weight[k] = isFree ? p.mass[k] : 0.f;
     const double damping = h * p.tissueDamping[k];
     out.strandGain[k] = isFree ? static_cast<float>(damping / (mass + damping)) : 0.f;
-    out.carried[k] = isFree ? static_cast<float>(1 - p.mass[k] / mass) : 0.f;
+    out.carried[k] = isFree ? std::max(p.carry, static_cast<float>(1 - p.mass[k] / mass)) : 0.f;
   }
 }
 

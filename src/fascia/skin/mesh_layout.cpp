@@ -23,14 +23,14 @@ std::uint32_t toIndex(std::size_t i) {
 std::array<float, MeshLayout::kTriangleFloats> coefficientsOf(const Triangle& t) {
   return {t.u[0], t.u[1], t.v[0], t.v[1], 0.5f * t.stretch_u, 0.5f * t.stretch_v, t.shear};
 }
-std::array<float, MeshLayout::kHingeFloats> coefficientsOf(const Hinge& h) {
+std::array<float, MeshLayout::kHingeFloats> coefficientsOf(const FoldEdge& h) {
   return {h.stiffness, h.restCosine, h.restSine, h.floor1, h.floor2, h.floorEdge};
 }
 // Of the elements that fill up a last batch; their corners are all one point.
 constexpr std::array<float, MeshLayout::kTriangleFloats> nothing(const Triangle&) {
   return {};
 }
-constexpr std::array<float, MeshLayout::kHingeFloats> nothing(const Hinge&) {
+constexpr std::array<float, MeshLayout::kHingeFloats> nothing(const FoldEdge&) {
   return {0, 1, 0, 1, 1, 1};
 }
 

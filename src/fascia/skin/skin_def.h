@@ -36,6 +36,8 @@ struct SkinTissueDef {
   double stiffness_N_per_m3 = 4000;     // [0, 1e8]; pull per metre beyond rest, per square metre
   double damping_Ns_per_m3 = 60;        // [0, 1e6]
   std::optional<double> rest_length_m;  // [0, 1]; none = the length at attachment
+  double carry = 0;  // [0, 1]; share of its anchor's changes of velocity that a point takes over at
+                     // once: 0 shakes like jelly, 1 not at all
 };
 
 // One end of the tube: a small ring of points fixed to a joint.

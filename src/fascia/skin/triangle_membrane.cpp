@@ -145,7 +145,7 @@ TriangleMembrane::TriangleMembrane(std::span<const Corners> triangles, const Vec
     }
   }
   hinges_ = makeHinges(kept, rest, m.bending);
-  for (const Hinge& hinge : hinges_) {
+  for (const FoldEdge& hinge : hinges_) {
     const std::array<Mat3, 4> bending = hingeStiffness(hinge, rest);
     for (std::size_t k = 0; k < 4; ++k) stiffness[hinge.corners[k]] += bending[k];
   }
@@ -163,7 +163,7 @@ double TriangleMembrane::energy(const VectorArray& r) const {
              t.stretch_v * plateauEnergy(s.strain_v(), 0.5 * cap_) +
              t.shear * plateauEnergy(s.shear(), cap_);
   }
-  for (const Hinge& hinge : hinges_) total += hingeEnergy(hinge, r);
+  for (const FoldEdge& hinge : hinges_) total += hingeEnergy(hinge, r);
   return total;
 }
 
@@ -213,7 +213,7 @@ void TriangleMembrane::addForceJacobian(const VectorArray& r, bool definite,
       }
     }
   }
-  for (const Hinge& hinge : hinges_) addHingeJacobian(hinge, r, entries);
+  for (const FoldEdge& hinge : hinges_) addHingeJacobian(hinge, r, entries);
 }
 
 }  // namespace fascia

@@ -31,7 +31,7 @@ struct TriangleMaterial {
 //
 // Small strains cost the same as on ElasticGrid. The force is exactly −∂ε/∂r. As on the grid, each
 // of the three stresses stays constant where its strain is beyond what max_stretch gives. Bending
-// is added as Hinge.
+// is added on top.
 class TriangleMembrane {
  public:
   using Corners = std::array<std::uint32_t, 3>;
@@ -64,12 +64,12 @@ class TriangleMembrane {
     float inverseRest[3];  // 1/m² per squared length of the edges 01, 02 and 12 in the rest shape
   };
   const std::vector<Triangle>& triangles() const { return triangles_; }  // those with stiffness
-  const std::vector<Hinge>& hinges() const { return hinges_; }           // if it bends
+  const std::vector<FoldEdge>& hinges() const { return hinges_; }        // if it bends
   float cap() const { return cap_; }  // plateau of |x_u|² − 1: max_stretch² − 1
 
  private:
   std::vector<Triangle> triangles_;
-  std::vector<Hinge> hinges_;
+  std::vector<FoldEdge> hinges_;
   FloatArray bound_, areas_;
   float cap_ = 1;
 };
