@@ -1,0 +1,95 @@
+// From a rigged file to living skin: import, fitting, simulation.
+#include <gtest/gtest.h>
+
+#include <fascia/character/character.h>
+#include <fascia/fitting/fit_flesh.h>
+#include <fascia/io/rig_import.h>
+
+#include "support/assets.h"
+
+namespace fascia {
+namespace {
+
+CharacterDef fleshOut(const std::string& file) {
+  CharacterDef def;
+  auto model = std::make_shared<const RiggedModel>(readRiggedModel(file));
+  FleshFit fit = fitFlesh(*model);
+  def.name = model->name;
+  def.skeleton = std::move(fit.skeleton);
+  def.flesh = std::move(fit.flesh);
+  def.rig = RigDef{file, 1, model};
+  // Skin as soft as `fascia flesh` makes it.
+  SkinDef& skin = def.skin.emplace();
+  skin.tissue.stiffness_N_per_m3 = 16000;
+  skin.tissue.damping_Ns_per_m3 = 100;
+  skin.material.stretch_u_N_per_m = skin.material.stretch_v_N_per_m = 10;
+  skin.material.shear_N_per_m = 5;
+  skin.material.prestretch = 1;
+  skin.fat.thickness_m = 0.1;
+  skin.fat.compressible = 0.8;
+  def.simulation.settle_s = 0.1;
+  return def;
+}
+
+TEST(RigCharacter, WalksInItsSkin) {
+  const auto file = assetFile("mesh2motion-cc0/fox-animations.glb");
+  if (!file) GTEST_SKIP() << "the shared assets are not here";
+  const Character character(fleshOut(file->string()));
+  const RiggedModel& rig = *character.def().rig->model;
+  const int walk = character.findMotion("Walk");
+  ASSERT_GE(walk, 0);
+  CharacterState state = initialState(character, walk);
+  SkinStats stats;
+  TriangleMesh before, mesh;
+  skinSurface(*character.skin(), state.skin, before);
+  for (int frame = 0; frame < 30; ++frame) {
+    advance(character, walk, 1.0 / 30, state, stats);
+    measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin, stats);
+  }
+  skinSurface(*character.skin(), state.skin, mesh);
+  ASSERT_EQ(mesh.positions.size(), rig.vertices.size());
+  double farthest = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    ASSERT_TRUE(mesh.positions[i].allFinite()) << i;
+    farthest = std::max(farthest, double{(mesh.positions[i] - before.positions[i]).norm()});
+  }
+  EXPECT_GT(farthest, 0.01 * rig.height_m());  // it does walk
+  EXPECT_LT(stats.max_penetration_m, 1e-3 * rig.height_m());
+  EXPECT_LT(stats.max_edge_stretch, 6);
+  EXPECT_EQ(stats.repaired_points, 0u);
+}
+
+TEST(RigCharacter, MovesItsJointsAsTheFileDoes) {
+  const auto file = assetFile("mesh2motion-cc0/fox-animations.glb");
+  if (!file) GTEST_SKIP() << "the shared assets are not here";
+  CharacterDef def = fleshOut(file->string());
+  def.skin.reset();
+  const Character character(def);
+  const RiggedModel& rig = *character.def().rig->model;
+  ASSERT_EQ(character.motionCount(), rig.motions.size());
+  CharacterState rest = initialState(character, -1);
+  for (std::size_t m = 0; m < rig.motions.size(); ++m) {
+    const int motion = character.findMotion(rig.motions[m].name);
+    ASSERT_GE(motion, 0);
+    CharacterState state;
+    std::vector<Transform> world;
+    for (const double time : {0.0, 0.31, 0.77}) {
+      state.time_s = time;
+      poseLayers(character, motion, true, state);
+      poseRig(rig, static_cast<int>(m), time, world);
+      for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+        const std::size_t k = character.skeleton().find(rig.joints[j].name).index();
+        // Both went the same way from rest.
+        const Transform moved =
+            state.skeleton.joint_world[k] * rest.skeleton.joint_world[k].inverse();
+        const Transform expected = world[j] * rig.joints[j].rest_world.inverse();
+        EXPECT_LT((moved.rotation - expected.rotation).norm(), 1e-5) << rig.joints[j].name;
+        EXPECT_LT((moved.translation_m - expected.translation_m).norm(), 1e-5 * rig.size_m())
+            << rig.joints[j].name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fascia
