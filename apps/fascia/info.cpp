@@ -47,8 +47,10 @@ class Facts {
     answer_.set(name, std::move(value));
   }
 
-  void addLines(const std::string& name, Json value, const std::string& lines) {
-    lines_.push_back(lines);
+  // Lines that stand for themselves, to be copied into a file.
+  void addLines(const std::string& name, Json value, std::string lines) {
+    while (lines.ends_with('\n')) lines.pop_back();
+    lines_.push_back(std::move(lines));
     answer_.set(name, std::move(value));
   }
 
