@@ -96,14 +96,17 @@ struct BlockTest {
       if (yielding[s] == 0) continue;
       field.evaluate(SolidId(n), view(carried, block.first, block.count), lanes.distance.data(),
                      lanes.normal.view(block.count));
-      float* yields = yieldsOf(s);
+      float* ofPoint = yieldsOf(s);
+      std::uint32_t beyond = 0;
       for (std::size_t l = 0; l < block.count; ++l) {
         const float depth = lanes.fat[l] - lanes.distance[l], yield = yield_m[block.first + l];
+        beyond |= depth > yield ? std::uint32_t{1} << l : 0;
         const float push = yield - 0.5f * (depth - yield);
-        yields[l] = depth <= yield                      ? 0
-                    : role == Role::anchors && push > 0 ? depth - push
-                                                        : kFarAway;
+        ofPoint[l] = depth <= yield                      ? 0
+                     : role == Role::anchors && push > 0 ? depth - push
+                                                         : kFarAway;
       }
+      if (deep) deep[s] = beyond & yielding[s];
     }
   }
   float* yieldsOf(std::size_t solid) { return yields.data() + solid * PointBlock::kCapacity; }
