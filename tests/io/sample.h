@@ -28,6 +28,7 @@ inline const char* const kRigged = R"({
   "skin": {
     "material": {"drag_Ns_per_m3": 2},
     "fat": {"thickness_m": 0.004, "compressible": 0.4, "bulk_Pa": 900},
+    "tissue": {"carry": 0.5},
     "contact": {"self": true, "gap_m": 0.001},
     "parts": [{"name": "eyes"}, {"name": "ears", "rigid": false}]
   }
