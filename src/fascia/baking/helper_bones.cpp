@@ -1,6 +1,7 @@
 #include <fascia/baking/helper_bones.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <Eigen/SVD>
@@ -63,25 +64,30 @@ void sweepFrame(const SkinningProblem& problem, const std::vector<std::vector<Us
   }
 }
 
-// The joint of the patch's own that carries it best; joints with little of it do not count.
+// The joint of the patch's own that carries it best, where it needs help; joints with little of it
+// do not count.
 int parentOf(const SkinningProblem& problem, std::span<const PointWeights> rigWeights,
-             const BoneTracks& bones, std::span<const std::uint32_t> patch) {
+             const BoneTracks& bones, std::span<const std::uint32_t> patch,
+             std::span<const double> say) {
   std::map<std::size_t, double> share;
-  for (const std::uint32_t i : patch) {
-    for (std::size_t k = 0; k < PointWeights::kMost && rigWeights[i].weight[k] > 0; ++k) {
-      share[rigWeights[i].joint[k]] += static_cast<double>(rigWeights[i].weight[k]);
+  double all = 0;
+  for (std::size_t p = 0; p < patch.size(); ++p) {
+    const PointWeights& w = rigWeights[patch[p]];
+    for (std::size_t k = 0; k < PointWeights::kMost && w.weight[k] > 0; ++k) {
+      share[w.joint[k]] += say[p] * static_cast<double>(w.weight[k]);
     }
+    all += say[p];
   }
-  const double least = 0.1 * static_cast<double>(patch.size());
   int best = 0;
   double bestError = -1;
   for (const auto& [joint, sum] : share) {
-    if (sum < least) continue;
+    if (sum < 0.1 * all) continue;
     double error = 0;
-    for (const std::uint32_t i : patch) {
+    for (std::size_t p = 0; p < patch.size(); ++p) {
       for (std::size_t f = 0; f < problem.frameCount; ++f) {
-        error += (bones.at(joint, f).point(problem.rest_m[i]) - problem.target(i, f).cast<double>())
-                     .squaredNorm();
+        error += say[p] * (bones.at(joint, f).point(problem.rest_m[patch[p]]) -
+                           problem.target(patch[p], f).cast<double>())
+                              .squaredNorm();
       }
     }
     if (bestError < 0 || error < bestError) best = static_cast<int>(joint), bestError = error;
@@ -156,16 +162,18 @@ HelperSeed seedHelper(const SkinningProblem& problem, const PointGraph& graph,
   HelperSeed seed;
   seed.point = worstPlace(graph, squaredError, earlierSeeds, patchSize);
   const std::vector<std::uint32_t> patch = patchAround(graph, seed.point, patchSize);
-  seed.parent = parentOf(problem, rigWeights, bones, patch);
+  // Points that the other bones already carry well have little say.
   double largest = 0;
   for (const std::uint32_t i : patch) largest = std::max(largest, squaredError[i]);
+  std::vector<double> say;
+  for (const std::uint32_t i : patch) say.push_back(largest > 0 ? squaredError[i] / largest : 1.0);
+  seed.parent = parentOf(problem, rigWeights, bones, patch, say);
   const std::span<const Transform> like = bones.track(static_cast<std::size_t>(seed.parent));
   for (std::size_t f = 0; f < problem.frameCount; ++f) {
     RigidFit fit(problem.rest_m[seed.point]);
-    for (const std::uint32_t i : patch) {
-      // Points that the other bones already carry well have little say.
-      const double say = largest > 0 ? std::sqrt(squaredError[i] / largest) : 1.0;
-      fit.add(problem.rest_m[i], say, say * problem.target(i, f).cast<double>());
+    for (std::size_t p = 0; p < patch.size(); ++p) {
+      const double root = std::sqrt(say[p]);
+      fit.add(problem.rest_m[patch[p]], root, root * problem.target(patch[p], f).cast<double>());
     }
     seed.track.push_back(fit.solve(like[f]));
   }

@@ -12,7 +12,7 @@ namespace fascia {
 
 // A simulated motion of an imported character, to be written back into the file that it came from.
 struct RigClip {
-  const RiggedModel& model;    // its sourceFile must be a glTF, unchanged since it was read
+  const RiggedModel& model;    // its sourceFile must be unchanged since it was read
   const Recording& recording;  // skin_m: model.vertices, in their order
   // Frame by frame, per joint of the model: the world frames that the skin was simulated with.
   const std::vector<std::vector<Transform>>& joints_world;
@@ -39,7 +39,8 @@ struct RigBakeReport {
 RigBakeReport writeRigAsBones(const RigClip& clip, const DecompositionOptions& options,
                               const std::string& path);
 
-// Morph targets on top of the rig's own skinning, after those that the file has.
+// Morph targets on top of the rig's own skinning, after those that the file has. Vertices at one
+// place get one vertex' weights, as they were simulated: seams stay closed.
 RigBakeReport writeRigAsMorphs(const RigClip& clip, const MorphOptions& options,
                                const std::string& path);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include <fascia/io/rig_writer_geometry.h>
 #include <fascia/io/rig_writer_motion.h>
 #include <fascia/io/rig_writer_player.h>
 
@@ -78,6 +79,7 @@ class MorphWriter {
     for (const auto& [node, part] : firstPart) {
       oldTargets[node] = listSize(findMember(source_.primitive(model_.parts[part]), "targets"));
     }
+    weldWeights();
     addTargets();
     for (const auto& [node, part] : firstPart) {
       nameTargets(node, oldTargets[node]);
@@ -91,6 +93,27 @@ class MorphWriter {
   Json& meshOf(int node) {
     return source_.item("meshes",
                         static_cast<int>(findMember(source_.node(node), "mesh")->number()));
+  }
+
+  // Vertices that were simulated as one point, but are weighted a little differently in the file,
+  // would come apart.
+  void weldWeights() {
+    for (std::size_t p = 0; p < model_.parts.size(); ++p) {
+      const RigPart& part = model_.parts[p];
+      const int index = source_.scene.nodes[at(part.node)].skin;
+      if (index < 0 || !source_.rig.skins[at(index)].rigid) continue;
+      const std::vector<int>& joints = source_.rig.skins[at(index)].joint;
+      std::vector<int> slot(model_.joints.size(), -1);
+      for (std::size_t i = 0; i < joints.size(); ++i) slot[at(joints[i])] = static_cast<int>(i);
+      bool known = true;  // welded to another mesh, it may follow a joint that this skin lacks
+      for (std::uint32_t v = part.firstVertex; v < part.firstVertex + part.vertexCount; ++v) {
+        const PointWeights& w = model_.weights[model_.vertices[v].point];
+        for (std::size_t k = 0; k < PointWeights::kMost && w.weight[k] > 0; ++k) {
+          known = known && slot[w.joint[k]] >= 0;
+        }
+      }
+      if (known) setWeights(source_, p, model_.weights, slot);
+    }
   }
 
   void addTargets() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/io/rig_to_gltf.h>
 #include <fascia/rig/blend_skinning.h>
 
 namespace fascia {
@@ -119,7 +120,7 @@ PartPlace placeOf(const RigSource& source, const RigPart& part) {
 
 RigSource RigSource::open(const RigClip& clip) {
   checkClip(clip);
-  RigSource source{clip, GltfDocument::read(clip.model.sourceFile), {}, {}, {}};
+  RigSource source{clip, readAsGltf(clip.model.sourceFile), {}, {}, {}};
   RiggedModel scratch;  // what the importer says a second time is not needed
   source.scene = GltfScene::of(source.document, clip.scale, scratch.notes);
   source.rig = GltfRig::of(source.document, source.scene, scratch);
