@@ -334,7 +334,7 @@ TEST(RigImport, AbsurdCountsAreRefusedAtOnce) {
   TubeRig many;
   many.indices = many.file.addAccessor(R"("componentType":5123,"count":1000000,"type":"SCALAR")");
   std::string primitives;
-  for (int i = 0; i < 100; ++i) primitives += (i > 0 ? "," : "") + many.primitive();
+  for (int i = 0; i < 100; ++i) primitives += std::string(i > 0 ? "," : "") + many.primitive();
   many.file.meshes = "[" + TubeRig::meshOf(primitives) + "]";
   EXPECT_THAT(complaint(many), HasSubstr("corners of triangles"));
 }
