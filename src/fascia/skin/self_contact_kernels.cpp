@@ -24,8 +24,7 @@ constexpr float kFacing = 0.2f;
 constexpr float kFacingDeep = -0.5f;
 // A point that is farther beside a triangle than this many times its height over it or depth below
 // it has nothing to do with it, …
-constexpr float kSteepest = 0.8f;
-constexpr float kSlant = 1.3f;  // √(1 + kSteepest²) and a little: distance over height, at most
+constexpr float kSteepest = 1.2f;
 // … unless it is nearer than this share of the gap, where directions mean little.
 constexpr float kAnySlope = 0.25f;
 // Corners' unit normals that cancel each other say nothing about the surface between them.
@@ -192,38 +191,13 @@ HWY_INLINE void forEachLane(Mask mask, std::uint32_t allowed, const Visit& visit
     visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-// The box of those points that can reach a group at all, over the interval.
-struct Way {
-  V3 low, high;
-  bool any = false;
-
-  HWY_INLINE Way(const PairReach& reach, const PointLanes& lanes) {
-    const D d;
-    const V3 boxLow = all(reach.low), boxHigh = all(reach.high);
-    const V3 none = all(1e30f, 1e30f, 1e30f), noneHigh = all(-1e30f, -1e30f, -1e30f);
-    Extent extent;
-    for (std::size_t l = 0; l < SelfContactModel::Patch::kCapacity; l += hn::Lanes(d)) {
-      const V3 r = at(lanes.place, l);
-      const Mask inside = hn::And(hn::And(hn::And(hn::Ge(r.x, boxLow.x), hn::Le(r.x, boxHigh.x)),
-                                          hn::And(hn::Ge(r.y, boxLow.y), hn::Le(r.y, boxHigh.y))),
-                                  hn::And(hn::Ge(r.z, boxLow.z), hn::Le(r.z, boxHigh.z)));
-      any = any || !hn::AllFalse(d, inside);
-      extent.add(select(inside, r, none), select(inside, r, noneHigh));
-    }
-    if (!any) return;
-    float from[3], to[3];
-    extent.write(from, to);
-    low = all(from) + all(reach.least), high = all(to) + all(reach.most);
-  }
-};
-
-// Calls visit(t) for the triangles of a group that the points can reach on their way and face.
+// Calls visit(t) for the triangles of a group that the block's points can reach and face.
 template <class Visit>
 HWY_INLINE void forEachTriangle(const SelfContactModel& m, std::size_t group, const SurfaceFrame& f,
-                                const PairReach& reach, V3 low, V3 high, const Visit& visit) {
+                                const PairReach& reach, const Visit& visit) {
   const D d;
   const SelfContactModel::Group g = m.groups[group];
-  const V3 axis = all(reach.axis);
+  const V3 low = all(reach.low), high = all(reach.high), axis = all(reach.axis);
   const V3 middle = scaled(hn::Set(d, 0.5f), low + high), half = high - middle;
   const V ahead = hn::Set(d, reach.ahead_m), depthScale = hn::Set(d, reach.depthScale);
   const auto meets = [](V lowest, V highest, V center, V radius) HWY_ATTR {
@@ -250,64 +224,39 @@ HWY_INLINE void forEachTriangle(const SelfContactModel& m, std::size_t group, co
   }
 }
 
-// A triangle, and which points may touch it.
+// One triangle and how points lie to it.
 struct TriangleTest {
-  const SelfContactModel& m;
-  const SurfaceFrame& f;
-  const PairReach& reach;
-  const PointLanes& lanes;
-  std::size_t t;
-  float deepest;
-  V3 center, normal;
-  V sphere, front, back;
+  V3 center, velocity, normal;
+  V radius, front, back, interval, slack;
 
-  HWY_INLINE TriangleTest(const SelfContactModel& model, const SurfaceFrame& frame,
-                          const PairReach& pair, const PointLanes& points, std::size_t triangle)
-      : m(model), f(frame), reach(pair), lanes(points), t(triangle) {
+  HWY_INLINE TriangleTest(const SelfContactModel& m, const SurfaceFrame& f, std::size_t t,
+                          const PairReach& reach) {
     const D d;
     const float inverse = f.inverseLength[t];
-    deepest = reach.depthScale * m.depth_m[t];
     center = all(f.center.x[t], f.center.y[t], f.center.z[t]);
+    velocity = all(f.velocity.x[t], f.velocity.y[t], f.velocity.z[t]);
     normal =
         all(f.areaNormal.x[t] * inverse, f.areaNormal.y[t] * inverse, f.areaNormal.z[t] * inverse);
-    const float most = reach.ahead_m + reach.way_m;
-    const float around = f.radius[t] + kSlant * std::max(most, deepest);
-    sphere = hn::Set(d, around * around);
-    front = hn::Set(d, most), back = hn::Set(d, -deepest);
+    radius = hn::Set(d, f.radius[t]);
+    front = hn::Set(d, reach.ahead_m);
+    back = hn::Set(d, -reach.depthScale * m.depth_m[t]);
+    interval = hn::Set(d, reach.interval_s);
+    slack = hn::Set(d, f.radius[t] + m.gap_m);
   }
 
-  // Most points fail this first look: at the sphere around all that can touch the triangle, at its
-  // slab, and at the directions.
-  HWY_INLINE Mask isNear(std::size_t l) const {
+  // Which points may touch it, by its plane and the sphere around it.
+  HWY_INLINE Mask mayTouch(const PointLanes& lanes, std::size_t l) const {
     const D d;
     const V3 way = at(lanes.place, l) - center;
-    const V height = dot(way, normal), facing = dot(at(lanes.normal, l), normal);
-    return hn::And(hn::And(hn::Le(dot(way, way), sphere), hn::Lt(facing, hn::Set(d, kMayFace))),
-                   hn::And(hn::Le(height, front), hn::Ge(height, back)));
-  }
-
-  // How far in front points may be at their velocity.
-  HWY_INLINE V ahead(std::size_t l) const {
-    const D d;
-    const V3 velocity = all(f.velocity.x[t], f.velocity.y[t], f.velocity.z[t]);
-    const V approach = dot(velocity - at(lanes.velocity, l), normal);
-    return hn::MulAdd(hn::Set(d, reach.interval_s), hn::Max(approach, hn::Zero(d)),
-                      hn::Set(d, reach.ahead_m));
-  }
-
-  // The second look, at those that are near.
-  HWY_INLINE Mask mayTouch(std::size_t l, V ahead) const {
-    const D d;
-    const V3 way = at(lanes.place, l) - center;
-    const V height = dot(way, normal), square = dot(way, way), radius = hn::Set(d, f.radius[t]);
+    const V height = dot(way, normal), square = dot(way, way);
+    const V approach = hn::Mul(interval, dot(velocity - at(lanes.velocity, l), normal));
+    const V facing = dot(at(lanes.normal, l), normal);
     const V aside = hn::NegMulAdd(height, height, square);
-    const V widest = hn::MulAdd(hn::Set(d, kSteepest), hn::Abs(height),
-                                hn::Set(d, f.radius[t] + kAnySlope * m.gap_m));
-    const V range = hn::Mul(hn::Set(d, kSlant), hn::Max(ahead, hn::Neg(back)));
-    const V farthest = hn::Add(hn::Min(hn::LoadU(d, lanes.nearest_m.data() + l), range), radius);
-    const V limit = hn::MulAdd(hn::Set(d, (kFacing - kFacingDeep) / deepest),
-                               hn::Min(height, hn::Zero(d)), hn::Set(d, kMayFace));
-    return hn::And(hn::And(hn::Le(height, ahead), hn::Lt(dot(at(lanes.normal, l), normal), limit)),
+    const V widest = hn::MulAdd(hn::Set(d, kSteepest), hn::Abs(height), slack);
+    const V farthest = hn::Add(hn::LoadU(d, lanes.nearest_m.data() + l), radius);
+    const V ahead = hn::Add(front, hn::Max(approach, hn::Zero(d)));
+    return hn::And(hn::And(hn::And(hn::Le(height, ahead), hn::Ge(height, back)),
+                           hn::Lt(facing, hn::Set(d, kMayFace))),
                    hn::And(hn::Le(aside, hn::Mul(widest, widest)),
                            hn::Le(square, hn::Mul(farthest, farthest))));
   }
@@ -380,8 +329,7 @@ struct TouchLanes {
   V3 normal;
   Mask touching;
 
-  HWY_INLINE TouchLanes(const Corners& t, V3 place, V3 pointNormal, V ahead, float gap,
-                        float deepest) {
+  HWY_INLINE TouchLanes(const Corners& t, V3 place, V3 pointNormal, float gap, float deepest) {
     const D d;
     const V3 way = place - t.a;
     const NearestPoint point(way, t.toB, t.toC);
@@ -402,9 +350,8 @@ struct TouchLanes {
         hn::IfThenElse(hn::Lt(distance, zero), hn::Mul(nearest, hn::Set(d, 1 / deepest)), zero);
     const V limit = hn::MulAdd(depth, hn::Set(d, kFacingDeep - kFacing), hn::Set(d, kFacing));
     facing = hn::Sub(dot(pointNormal, normal), limit);
-    touching = hn::And(
-        hn::And(hasNormal, above),
-        hn::And(hn::Le(distance, ahead), hn::And(hn::Le(depth, one), hn::Lt(facing, zero))));
+    touching =
+        hn::And(hn::And(hasNormal, above), hn::And(hn::Le(depth, one), hn::Lt(facing, zero)));
   }
 
   // Calls visit(lane, touch) for the lanes in `allowed`.
@@ -438,17 +385,13 @@ void findTouchesImpl(const SelfContactModel& m, std::size_t patch, std::size_t g
                      const PointLanes& lanes, const TouchVisit& visit) {
   const D d;
   const auto& points = m.patches[patch].points;
-  const Way way(reach, lanes);
-  if (!way.any) return;
-  forEachTriangle(m, group, f, reach, way.low, way.high, [&](std::size_t t) HWY_ATTR {
-    const TriangleTest test(m, f, reach, lanes, t);
+  forEachTriangle(m, group, f, reach, [&](std::size_t t) HWY_ATTR {
+    const TriangleTest test(m, f, t, reach);
     for (std::size_t l = 0; l < points.size(); l += hn::Lanes(d)) {
-      const Mask near = test.isNear(l);
-      if (hn::AllFalse(d, near)) continue;
-      const V ahead = test.ahead(l);
-      if (hn::AllFalse(d, hn::And(near, test.mayTouch(l, ahead)))) continue;
-      const TouchLanes touches(Corners(m, position, f, t), at(lanes.place, l), at(lanes.normal, l),
-                               ahead, m.gap_m, test.deepest);
+      if (hn::AllFalse(d, test.mayTouch(lanes, l))) continue;
+      const Corners corners(m, position, f, t);
+      const TouchLanes touches(corners, at(lanes.place, l), at(lanes.normal, l), m.gap_m,
+                               reach.depthScale * m.depth_m[t]);
       touches.forEach(reach.lanes >> l, [&](std::size_t i, Touch& touch) {
         touch.lane = static_cast<std::uint32_t>(l + i);
         touch.triangle = static_cast<std::uint32_t>(t);

@@ -52,15 +52,13 @@ struct PointLanes {
 
 // How a patch and a group of triangles can meet until the end of the interval.
 struct PairReach {
-  float low[3], high[3];    // box that points must be in
-  float least[3], most[3];  // how they go by until then, seen from the group: 0 among them
-  float axis[3];            // of the points' normals: triangles that look …
-  float cosineNever;        // … closer to it than this face none of them
-  float way_m;              // length of the longest way
-  float ahead_m;            // how far in front of a triangle a point may be, …
-  float interval_s;         // … and how long they may approach each other
-  float depthScale;         // times depth_m: how far behind
-  std::uint32_t lanes;      // bit by bit: which points
+  float low[3], high[3];  // box of the points on their way, seen from the group
+  float axis[3];          // of the points' normals: triangles that look …
+  float cosineNever;      // … closer to it than this face none of them
+  float ahead_m;          // how far in front of a triangle a point may be, …
+  float interval_s;       // … and how long they may approach each other
+  float depthScale;       // times depth_m: how far behind
+  std::uint32_t lanes;    // bit by bit: which points
 };
 
 // A point near or behind a triangle that faces it.
@@ -96,6 +94,6 @@ void findTouches(const SelfContactModel& model, std::size_t patch, std::size_t g
 
 // Cosine of a point's and a triangle's own normals above which they do not face each other. The
 // smoothed normals, which decide in the end, may differ.
-inline constexpr float kMayFace = 0.3f;
+inline constexpr float kMayFace = 0.5f;
 
 }  // namespace fascia

@@ -28,8 +28,6 @@ constexpr float kDepthShare = 0.5f;
 // In the rest shape deeper points count too: they may come up later. Below the share that would
 // take the other side of every thin limb for one that came through.
 constexpr float kRestDepthScale = 1.5f;
-// A point at the gap along the smoothed normal may be farther than that above the triangle's plane.
-constexpr float kRestAheadGaps = 2;
 // Sheets nearer than this many gaps in the rest shape cross, for all that rounding can tell.
 constexpr float kCrossing = 0.02f;
 // Distances in the rest shape are kept up to rounding.
@@ -140,23 +138,18 @@ class Preparation {
     meanEdge_m_ = meanEdgeLength();
     model_.gap_m = std::min(model_.gap_m, meanEdge_m_);
     std::erase_if(tested_, [&](std::uint32_t k) { return neighbors_[k].empty(); });
-    sortCompactly(tested_);
-    constexpr std::size_t kPatch = SelfContactModel::Patch::kCapacity;
-    for (std::size_t first = 0; first < tested_.size(); first += kPatch) {
-      SelfContactModel::Patch& patch = model_.patches.emplace_back();
-      patch.count = static_cast<std::uint32_t>(std::min(kPatch, tested_.size() - first));
-      for (std::size_t l = 0; l < kPatch; ++l)
-        patch.points[l] =
-            static_cast<std::int32_t>(tested_[first + std::min<std::size_t>(l, patch.count - 1)]);
-    }
+    split(tested_);
   }
 
-  // Halves within a patch too, so that each vector of points is compact.
-  void sortCompactly(std::span<std::uint32_t> points) const {
+  void split(std::span<std::uint32_t> points) {
     constexpr std::size_t kPatch = SelfContactModel::Patch::kCapacity;
-    const std::size_t unit = points.size() > kPatch ? kPatch : SelfContactModel::kLanes;
-    if (points.size() <= unit) {
+    if (points.empty()) return;
+    if (points.size() <= kPatch) {
       std::sort(points.begin(), points.end());
+      SelfContactModel::Patch& patch = model_.patches.emplace_back();
+      patch.count = static_cast<std::uint32_t>(points.size());
+      for (std::size_t l = 0; l < kPatch; ++l)
+        patch.points[l] = static_cast<std::int32_t>(points[std::min(l, points.size() - 1)]);
       return;
     }
     using Six = Eigen::Vector<float, 6>;
@@ -169,14 +162,14 @@ class Preparation {
     for (const std::uint32_t k : points) low = low.cwiseMin(at(k)), high = high.cwiseMax(at(k));
     Eigen::Index axis;
     (high - low).maxCoeff(&axis);
-    const std::size_t half = (points.size() + unit - 1) / unit / 2 * unit;
+    const std::size_t patches = (points.size() + kPatch - 1) / kPatch, half = patches / 2 * kPatch;
     std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half),
                      points.end(), [&](std::uint32_t a, std::uint32_t b) {
                        const float x = at(a)[axis], y = at(b)[axis];
                        return x != y ? x < y : a < b;
                      });
-    sortCompactly(points.first(half));
-    sortCompactly(points.subspan(half));
+    split(points.first(half));
+    split(points.subspan(half));
   }
 
   // The patch that most corners of a triangle are in; the number of patches if none is.
@@ -318,7 +311,7 @@ class Preparation {
     SurfaceSearch search(model_);
     const VectorArray still(model_.points);
     search.update(rest_, still, 0);
-    const SurfaceSearch::Query query{kRestAheadGaps * model_.gap_m, kRestDepthScale, rest_, still};
+    const SurfaceSearch::Query query{model_.gap_m, kRestDepthScale, rest_, still};
     PointLanes lanes;
     for (std::size_t p = 0; p < model_.patches.size(); ++p)
       search.search(p, query, lanes, [&](std::uint32_t group, const Touch& touch) {

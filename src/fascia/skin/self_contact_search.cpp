@@ -109,17 +109,13 @@ bool SurfaceSearch::meet(const MotionBounds& points, std::uint32_t group, const 
   out.cosineNever = cosineNever(points.normals);
   if (within(other.normals, out.axis, out.cosineNever)) return false;
   const float range = std::max(query.ahead_m, query.depthScale * model_->groups[group].deepest_m);
-  float square = 0;
   for (int a = 0; a < 3; ++a) {
-    out.least[a] = std::min(0.f, (points.slowest[a] - other.fastest[a]) * interval_s_);
-    out.most[a] = std::max(0.f, (points.fastest[a] - other.slowest[a]) * interval_s_);
-    out.low[a] = other.low[a] - range - out.most[a];
-    out.high[a] = other.high[a] + range - out.least[a];
-    if (points.high[a] < out.low[a] || points.low[a] > out.high[a]) return false;
-    const float way = std::max(out.most[a], -out.least[a]);
-    square += way * way;
+    out.low[a] =
+        points.low[a] + std::min(0.f, (points.slowest[a] - other.fastest[a]) * interval_s_);
+    out.high[a] =
+        points.high[a] + std::max(0.f, (points.fastest[a] - other.slowest[a]) * interval_s_);
+    if (out.low[a] - range > other.high[a] || out.high[a] + range < other.low[a]) return false;
   }
-  out.way_m = std::sqrt(square);
   out.ahead_m = query.ahead_m;
   out.interval_s = interval_s_;
   out.depthScale = query.depthScale;
