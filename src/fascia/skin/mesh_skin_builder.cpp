@@ -290,6 +290,13 @@ void MeshSkinBuilder::setQuantities() {
   applySkinEdits(def_, base_, report_, points, false, skin_.rest_, q);
 }
 
+// How far a point's weight stretches its strand: so much higher lies the anchor.
+Vec3 MeshSkinBuilder::sag(std::size_t k) const {
+  const double stiffness = skin_.points_.tissueStiffness[k];
+  if (!(stiffness > 0)) return Vec3::Zero();
+  return skin_.points_.mass[k] / stiffness * skin_.settings_.gravity_m_per_s2;
+}
+
 TriangleMembrane MeshSkinBuilder::makeMembrane() const {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   TriangleMaterial material;
@@ -329,10 +336,11 @@ void MeshSkinBuilder::makeModel() {
   }
   skin_.points_.carry = static_cast<float>(def_.tissue.carry);
   skin_.points_.slideLimit.resize(elasticCount_);
-  for (std::size_t k = 0; k < elasticCount_; ++k)
-    skin_.points_.slideLimit[k] =
-        static_cast<float>(kSlideOfFat * double{skin_.quantities_[SkinQuantity::fat][k]} +
-                           kLeastSlide * skin_.size_m_);
+  for (std::size_t k = 0; k < elasticCount_; ++k) {
+    const double slide =
+        kSlideOfFat * double{skin_.quantities_[SkinQuantity::fat][k]} + kLeastSlide * skin_.size_m_;
+    skin_.points_.slideLimit[k] = static_cast<float>(slide + sag(k).norm());
+  }
   skin_.defaultStep_s_ = kStep_s;
   if (def_.contact.self) {
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -366,9 +374,7 @@ void MeshSkinBuilder::carryPoints() {
       fixed.push_back(point);
       continue;
     }
-    const double stiffness = skin_.points_.tissueStiffness[k];
-    if (stiffness > 0)
-      point.rest_world -= skin_.points_.mass[k] / stiffness * skin_.settings_.gravity_m_per_s2;
+    point.rest_world -= sag(k);
     anchors.push_back(point);
   }
   skin_.allByJoints_ = JointCarrier(joints_, all);

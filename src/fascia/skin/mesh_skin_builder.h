@@ -37,6 +37,7 @@ class MeshSkinBuilder {
   void layFat(const std::vector<JointCarrier::Point>& skin,
               const std::vector<JointCarrier::Point>& anchors);
   TriangleMembrane makeMembrane() const;
+  Vec3 sag(std::size_t k) const;
 
   Skin& skin_;
   const SkinDef& def_;
