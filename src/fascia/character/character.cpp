@@ -140,9 +140,9 @@ void Character::bindRigMotions(Diagnostics& diagnostics) {
   const std::shared_ptr<const RiggedModel>& model = def_.rig->model;
   std::vector<SampledFrame> frames;
   for (const RigJoint& j : model->joints)
-    frames.push_back(
-        {j.name, j.parent < 0 ? "" : model->joints[static_cast<std::size_t>(j.parent)].name,
-         j.rest_world});
+    frames.push_back({j.name,
+                      j.parent < 0 ? "" : model->joints[static_cast<std::size_t>(j.parent)].name,
+                      j.rest_world});
   for (const SampledMotion& motion : model->motions) {
     if (findMotion(motion.name) >= 0) continue;
     // Shares the ownership of the whole model.

@@ -30,8 +30,8 @@ struct SimulationDef {
 // An imported, skinned mesh that is the character's skin instead of a grid. Its joints are found by
 // name in the character's skeleton; its motions can be played by name like the character's own.
 struct RigDef {
-  std::string file;  // glTF beside the character file
-  double scale = 1;  // (0, 1e6] of all its lengths
+  std::string file;                          // glTF beside the character file
+  double scale = 1;                          // (0, 1e6] of all its lengths
   std::shared_ptr<const RiggedModel> model;  // read from the file; not saved
 };
 

@@ -21,8 +21,8 @@ struct CharacterFile {
 // line, JSON pointer. The texture's presence is checked here; what only building can know (cycles,
 // names) is not.
 CharacterFile readCharacterFile(const std::string& path);
-// The same from memory; `file` is what messages call it. def.folder stays empty, and texture and rig
-// are not looked for.
+// The same from memory; `file` is what messages call it. def.folder stays empty, and texture and
+// rig are not looked for.
 CharacterFile readCharacterText(std::string_view text, const std::string& file = {});
 
 // Reads and builds: faults of both kinds carry file and line.

@@ -14,7 +14,7 @@ struct PointModel {
   FloatArray tissueDamping;     // N s/m
   FloatArray tissueRestLength;  // m
   FloatArray stiffnessBound;  // N/m, membrane + bending + tissue: what explicit steps must resolve
-  float carry = 0;              // least share of its anchor's velocity changes a point takes over
+  float carry = 0;            // least share of its anchor's velocity changes a point takes over
   FloatArray slideLimit;      // m; farthest from its anchor at an interval's end; empty: any
   FloatArray free;            // 1, or 0 for points fixed to a joint and for padding
 };
