@@ -1,249 +1,22 @@
 #include <fascia/rig/joint_meaning.h>
 
 #include <algorithm>
-#include <cctype>
-#include <unordered_map>
+
+#include <fascia/rig/joint_words.h>
 
 namespace fascia {
 namespace {
 
-using Words = std::vector<std::string>;
-
-bool isDigit(char c) {
-  return c >= '0' && c <= '9';
-}
-bool isUpper(char c) {
-  return c >= 'A' && c <= 'Z';
-}
-bool isLetter(char c) {
-  return isUpper(c) || (c >= 'a' && c <= 'z');
-}
-
-// "J_Bip_L_UpperArm01" -> j, bip, l, upper, arm, 01. Splits at signs, digits and capitals.
-Words wordsOf(std::string_view name) {
-  const std::size_t space = name.find_last_of(":|");
-  if (space != std::string_view::npos) name.remove_prefix(space + 1);
-  Words words;
-  char last = ' ';
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const char c = name[i];
-    if (isLetter(c) || isDigit(c)) {
-      const bool nextIsSmall =
-          i + 1 < name.size() && isLetter(name[i + 1]) && !isUpper(name[i + 1]);
-      const bool starts = isDigit(c) != isDigit(last) || !(isLetter(last) || isDigit(last)) ||
-                          (isUpper(c) && (!isUpper(last) || nextIsSmall));
-      if (starts) words.emplace_back();
-      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-    last = c;
-  }
-  return words;
-}
-
-enum class Key {
-  hips,
-  hip,
-  pelvis,
-  hipJoint,
-  spine,
-  neck,
-  head,
-  shoulder,
-  clavicle,
-  arm,
-  upperArm,
-  lowerArm,
-  hand,
-  leg,
-  upperLeg,
-  lowerLeg,
-  foot,
-  toe,
-  thumb,
-  index,
-  middle,
-  ring,
-  pinky,
-  finger
-};
-
-const std::unordered_map<std::string_view, Key>& vocabulary() {
-  static const std::unordered_map<std::string_view, Key> all = {{"hips", Key::hips},
-                                                                {"humanoidroot", Key::hips},
-                                                                {"hip", Key::hip},
-                                                                {"pelvis", Key::pelvis},
-                                                                {"hipjoint", Key::hipJoint},
-                                                                {"spine", Key::spine},
-                                                                {"chest", Key::spine},
-                                                                {"upperchest", Key::spine},
-                                                                {"chestlower", Key::spine},
-                                                                {"chestupper", Key::spine},
-                                                                {"abdomen", Key::spine},
-                                                                {"abdomenlower", Key::spine},
-                                                                {"abdomenupper", Key::spine},
-                                                                {"lowerback", Key::spine},
-                                                                {"back", Key::spine},
-                                                                {"torso", Key::spine},
-                                                                {"waist", Key::spine},
-                                                                {"ribcage", Key::spine},
-                                                                {"neck", Key::neck},
-                                                                {"necklower", Key::neck},
-                                                                {"neckupper", Key::neck},
-                                                                {"head", Key::head},
-                                                                {"skullbase", Key::head},
-                                                                {"shoulder", Key::shoulder},
-                                                                {"clavicle", Key::clavicle},
-                                                                {"collar", Key::clavicle},
-                                                                {"sternoclavicular", Key::clavicle},
-                                                                {"arm", Key::arm},
-                                                                {"upperarm", Key::upperArm},
-                                                                {"uparm", Key::upperArm},
-                                                                {"shldr", Key::upperArm},
-                                                                {"shldrbend", Key::upperArm},
-                                                                {"humerus", Key::upperArm},
-                                                                {"forearm", Key::lowerArm},
-                                                                {"lowerarm", Key::lowerArm},
-                                                                {"elbow", Key::lowerArm},
-                                                                {"forearmbend", Key::lowerArm},
-                                                                {"radius", Key::lowerArm},
-                                                                {"hand", Key::hand},
-                                                                {"wrist", Key::hand},
-                                                                {"leg", Key::leg},
-                                                                {"upleg", Key::upperLeg},
-                                                                {"upperleg", Key::upperLeg},
-                                                                {"thigh", Key::upperLeg},
-                                                                {"thighbend", Key::upperLeg},
-                                                                {"femur", Key::upperLeg},
-                                                                {"lowerleg", Key::lowerLeg},
-                                                                {"shin", Key::lowerLeg},
-                                                                {"calf", Key::lowerLeg},
-                                                                {"knee", Key::lowerLeg},
-                                                                {"tibia", Key::lowerLeg},
-                                                                {"foot", Key::foot},
-                                                                {"ankle", Key::foot},
-                                                                {"toe", Key::toe},
-                                                                {"toes", Key::toe},
-                                                                {"toebase", Key::toe},
-                                                                {"ball", Key::toe},
-                                                                {"metatarsal", Key::toe},
-                                                                {"thumb", Key::thumb},
-                                                                {"index", Key::index},
-                                                                {"middle", Key::middle},
-                                                                {"mid", Key::middle},
-                                                                {"ring", Key::ring},
-                                                                {"pinky", Key::pinky},
-                                                                {"little", Key::pinky},
-                                                                {"finger", Key::finger},
-                                                                {"handfinger", Key::index}};
-  return all;
-}
-
-// Helpers that no motion should drive, and tips that turn nothing.
-bool isHelperWord(const std::string& word) {
-  static const char* const all[] = {"ik",    "mch",    "ctrl", "control", "pole",      "target",
-                                    "twist", "roll",   "end",  "nub",     "tip",       "sec",
-                                    "leaf",  "helper", "site", "meta",    "metacarpal"};
-  return std::any_of(std::begin(all), std::end(all), [&](const char* w) { return word == w; });
-}
-
-bool isPrefixWord(const std::string& word) {
-  static const char* const all[] = {"def", "org", "mixamorig", "bip",   "j",  "b",     "c",
-                                    "cc",  "jnt", "bone",      "valve", "sk", "biped", "f"};
-  return std::any_of(std::begin(all), std::end(all), [&](const char* w) { return word == w; });
-}
-
-// A name taken apart.
-struct Reading {
-  bool known = false;
-  Key key = Key::hips;
-  BodySide side = BodySide::middle;
-  std::string number;  // the first after the word
-};
-
-bool takeSide(std::string& word, BodySide& side) {
-  for (const auto& [text, value] :
-       {std::pair{"left", BodySide::left}, {"right", BodySide::right}}) {
-    const std::string_view is = text;
-    if (word.starts_with(is)) {
-      word.erase(0, is.size());
-    } else if (word.ends_with(is)) {
-      word.erase(word.size() - is.size());
-    } else {
-      continue;
-    }
-    side = value;
-    return true;
-  }
-  if (word != "l" && word != "r") return false;
-  side = word == "l" ? BodySide::left : BodySide::right;
-  word.clear();
-  return true;
-}
-
-bool lookUp(std::string_view word, Reading& reading) {
-  const auto& all = vocabulary();
-  constexpr std::string_view kHand = "hand", kJoint = "joint";
-  auto found = all.find(word);
-  // "hand index", "wrist joint": the other word alone.
-  if (found == all.end() && word.starts_with(kHand)) {
-    word.remove_prefix(kHand.size());
-    found = all.find(word);
-  }
-  if (found == all.end() && word.ends_with(kJoint)) {
-    word.remove_suffix(kJoint.size());
-    found = all.find(word);
-  }
-  if (found == all.end()) return false;
-  reading.key = found->second;
-  return reading.known = true;
-}
-
-Reading read(const std::string& name) {
-  Reading reading;
-  Words words = wordsOf(name);
-  std::string whole;
-  bool numberOfPrefix = false;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    std::string word = words[i];
-    if (isHelperWord(word)) return {};
-    if (isDigit(word[0])) {
-      // Biped's "Bip01 …": the first number belongs to the prefix.
-      if (!numberOfPrefix && !whole.empty() && reading.number.empty()) reading.number = word;
-      numberOfPrefix = false;
-      continue;
-    }
-    if (whole.empty() && isPrefixWord(word)) {
-      numberOfPrefix = true;
-      continue;
-    }
-    // "CC_Base_L_Thigh", but not "ToeBase".
-    if (whole.empty() && word == "base") continue;
-    // Which bone of a finger it is shows in the hierarchy.
-    if (word == "proximal" || word == "intermediate" || word == "distal") continue;
-    numberOfPrefix = false;
-    takeSide(word, reading.side);
-    whole += word;
-  }
-  if (lookUp(whole, reading) || whole.size() < 3 || reading.side != BodySide::middle) {
-    return reading;
-  }
-  // "lthigh": a side that nothing separates.
-  if ((whole[0] == 'l' || whole[0] == 'r') && lookUp(std::string_view(whole).substr(1), reading)) {
-    reading.side = whole[0] == 'l' ? BodySide::left : BodySide::right;
-  }
-  return reading;
-}
-
 // Words that mean different bones in different rigs, settled by what else there is on that side.
 class Settler {
  public:
-  explicit Settler(std::span<const Reading> readings) : readings_(readings) {
-    fingersFromZero_ = std::any_of(readings.begin(), readings.end(), [](const Reading& r) {
-      return r.known && r.key == Key::finger && !r.number.empty() && r.number[0] == '0';
+  explicit Settler(std::span<const JointReading> readings) : readings_(readings) {
+    fingersFromZero_ = std::any_of(readings.begin(), readings.end(), [](const JointReading& r) {
+      return r.known && r.word == JointWord::finger && !r.number.empty() && r.number[0] == '0';
     });
   }
 
-  JointMeaning settle(const Reading& r) const {
+  JointMeaning settle(const JointReading& r) const {
     if (!r.known) return {};
     const BodyPart part = partOf(r);
     const bool sided = !isTrunk(part);
@@ -253,63 +26,66 @@ class Settler {
   }
 
  private:
-  bool has(Key key, BodySide side) const {
-    return std::any_of(readings_.begin(), readings_.end(),
-                       [&](const Reading& r) { return r.known && r.key == key && r.side == side; });
+  bool has(JointWord word, BodySide side) const {
+    return std::any_of(readings_.begin(), readings_.end(), [&](const JointReading& r) {
+      return r.known && r.word == word && r.side == side;
+    });
   }
-  bool hasUpperArm(BodySide s) const { return has(Key::arm, s) || has(Key::upperArm, s); }
-  bool hasThigh(BodySide s) const { return has(Key::upperLeg, s) || has(Key::hip, s); }
+  bool hasUpperArm(BodySide s) const {
+    return has(JointWord::arm, s) || has(JointWord::upperArm, s);
+  }
+  bool hasThigh(BodySide s) const { return has(JointWord::upperLeg, s) || has(JointWord::hip, s); }
 
-  BodyPart partOf(const Reading& r) const {
+  BodyPart partOf(const JointReading& r) const {
     const bool middle = r.side == BodySide::middle;
-    switch (r.key) {
-      case Key::hips:
+    switch (r.word) {
+      case JointWord::hips:
         return BodyPart::hips;
-      case Key::pelvis:
+      case JointWord::pelvis:
         return middle ? BodyPart::hips : BodyPart::pelvis;
-      case Key::hip:
+      case JointWord::hip:
         if (middle) return BodyPart::hips;
-        return has(Key::upperLeg, r.side) ? BodyPart::pelvis : BodyPart::upperLeg;
-      case Key::hipJoint:
-        return has(Key::upperLeg, r.side) ? BodyPart::pelvis : BodyPart::upperLeg;
-      case Key::spine:
+        return has(JointWord::upperLeg, r.side) ? BodyPart::pelvis : BodyPart::upperLeg;
+      case JointWord::hipJoint:
+        return has(JointWord::upperLeg, r.side) ? BodyPart::pelvis : BodyPart::upperLeg;
+      case JointWord::spine:
         return BodyPart::spine;
-      case Key::neck:
+      case JointWord::neck:
         return BodyPart::neck;
-      case Key::head:
+      case JointWord::head:
         return BodyPart::head;
-      case Key::shoulder:
+      case JointWord::shoulder:
         return hasUpperArm(r.side) ? BodyPart::clavicle : BodyPart::upperArm;
-      case Key::clavicle:
+      case JointWord::clavicle:
         return BodyPart::clavicle;
-      case Key::arm:
-      case Key::upperArm:
+      case JointWord::arm:
+      case JointWord::upperArm:
         return BodyPart::upperArm;
-      case Key::lowerArm:
+      case JointWord::lowerArm:
         return BodyPart::lowerArm;
-      case Key::hand:
+      case JointWord::hand:
         return BodyPart::hand;
-      case Key::leg:
+      case JointWord::leg:
         return hasThigh(r.side) ? BodyPart::lowerLeg : BodyPart::upperLeg;
-      case Key::upperLeg:
+      case JointWord::upperLeg:
         return BodyPart::upperLeg;
-      case Key::lowerLeg:
+      case JointWord::lowerLeg:
         return BodyPart::lowerLeg;
-      case Key::foot:
+      case JointWord::foot:
         return BodyPart::foot;
-      case Key::toe:
+      case JointWord::toe:
         return BodyPart::toe;
-      case Key::thumb:
+      case JointWord::thumb:
         return BodyPart::thumb;
-      case Key::index:
+      case JointWord::index:
         return BodyPart::index;
-      case Key::middle:
+      case JointWord::middle:
         return BodyPart::middle;
-      case Key::ring:
+      case JointWord::ring:
         return BodyPart::ring;
-      case Key::pinky:
+      case JointWord::pinky:
         return BodyPart::pinky;
-      case Key::finger:
+      case JointWord::finger:
         return finger(r.number);
     }
     return BodyPart::unknown;
@@ -323,7 +99,7 @@ class Settler {
                : static_cast<BodyPart>(static_cast<int>(BodyPart::thumb) + first);
   }
 
-  std::span<const Reading> readings_;
+  std::span<const JointReading> readings_;
   bool fingersFromZero_ = false;
 };
 
@@ -403,11 +179,11 @@ std::string describe(JointMeaning meaning) {
 }
 
 std::vector<JointMeaning> guessMeanings(std::span<const RigJoint> joints) {
-  std::vector<Reading> readings;
-  for (const RigJoint& joint : joints) readings.push_back(read(joint.name));
+  std::vector<JointReading> readings;
+  for (const RigJoint& joint : joints) readings.push_back(readJointName(joint.name));
   const Settler settler(readings);
   std::vector<JointMeaning> meanings;
-  for (const Reading& reading : readings) meanings.push_back(settler.settle(reading));
+  for (const JointReading& reading : readings) meanings.push_back(settler.settle(reading));
   settleTrunk(joints, meanings);
   return meanings;
 }

@@ -44,14 +44,9 @@ Vec3 nearestAxis(const Vec3& direction) {
   return Vec3::Unit(axis) * (direction[axis] < 0 ? -1 : 1);
 }
 
-// Where a driven joint's bone leads to: the one driven joint it holds. None: a fork, or an end.
-struct Bones {
-  std::vector<int> next;  // per driven joint; -1
-};
-
-Bones bonesOf(std::span<const DrivenJoint> driven) {
-  Bones bones;
-  bones.next.assign(driven.size(), -1);
+// Where each driven joint's bone leads to: the one driven joint it holds; -1: a fork, or an end.
+std::vector<int> bonesOf(std::span<const DrivenJoint> driven) {
+  std::vector<int> next(driven.size(), -1);
   std::vector<int> held(driven.size(), 0);
   for (std::size_t d = 0; d < driven.size(); ++d) {
     // Joints of a run move as one bone: it leads to what the last of them holds.
@@ -59,12 +54,12 @@ Bones bonesOf(std::span<const DrivenJoint> driven) {
     const auto above = static_cast<std::size_t>(driven[d].above);
     const std::size_t first = above - static_cast<std::size_t>(driven[above].inRun);
     ++held[first];
-    bones.next[first] = static_cast<int>(d);
+    next[first] = static_cast<int>(d);
   }
   for (std::size_t d = 0; d < driven.size(); ++d) {
-    if (held[d] != 1) bones.next[d] = -1;
+    if (held[d] != 1) next[d] = -1;
   }
-  return bones;
+  return next;
 }
 
 double toleranceOf(BodyPart part) {
@@ -128,6 +123,75 @@ double stanceError_rad(std::span<const Transform> world, std::span<const JointMe
   return std::max(error, std::abs(elevation[0] - elevation[1]));
 }
 
+namespace {
+
+// Turns the target's rest pose onto the source's, joint by joint from the root on.
+class Aligner {
+ public:
+  Aligner(std::span<const DrivenJoint> driven, std::span<const Transform> sourceRest,
+          std::span<const Transform> targetRest, RestAlignment& out)
+      : driven_(driven),
+        next_(bonesOf(driven)),
+        sourceRest_(sourceRest),
+        targetRest_(targetRest),
+        out_(out) {}
+
+  void run() {
+    out_.turn.assign(driven_.size(), Mat3::Identity());
+    out_.axis.assign(driven_.size(), Vec3::Zero());
+    for (std::size_t d = 0; d < driven_.size(); ++d) align(d);
+  }
+
+ private:
+  void align(std::size_t d) {
+    // Carried along with what holds it, so that no bone twists against its parent.
+    const DrivenJoint& joint = driven_[d];
+    const auto above = static_cast<std::size_t>(joint.above);
+    if (joint.above >= 0) out_.turn[d] = out_.turn[above];
+    if (joint.inRun > 0) {
+      out_.axis[d] = out_.axis[above];
+    } else if (joint.meaning.part == BodyPart::foot && joint.above >= 0) {
+      alignSole(d, above);
+    } else if (next_[d] >= 0 && joint.meaning.part != BodyPart::toe) {
+      const auto next = static_cast<std::size_t>(next_[d]);
+      const Vec3 from = out_.turn[d] * (target(next) - target(d));
+      out_.axis[d] = source(next) - source(d);
+      if (angle(from, out_.axis[d]) > toleranceOf(joint.meaning.part)) {
+        out_.turn[d] = shortestArc(from, out_.axis[d]) * out_.turn[d];
+      }
+    }
+  }
+
+  // Both stand with flat soles, however high their ankles lie: only the heading may differ.
+  void alignSole(std::size_t d, std::size_t shin) {
+    const Vec3 down = -Vec3::UnitY();
+    const bool splayed = angle(out_.axis[shin], down) > kSplayed_rad;
+    const Mat3 sole = splayed ? shortestArc(down, out_.axis[shin]) : Mat3::Identity();
+    out_.turn[d] = sole;
+    if (next_[d] < 0) return;
+    const auto next = static_cast<std::size_t>(next_[d]);
+    const Vec3 up = sole.col(1);
+    out_.axis[d] = source(next) - source(d);
+    out_.turn[d] = shortestArc(perpendicular(sole * (target(next) - target(d)), up),
+                               perpendicular(out_.axis[d], up)) *
+                   sole;
+  }
+
+  Vec3 source(std::size_t d) const {
+    return out_.toTarget * sourceRest_[static_cast<std::size_t>(driven_[d].source)].translation_m;
+  }
+  Vec3 target(std::size_t d) const {
+    return targetRest_[static_cast<std::size_t>(driven_[d].target)].translation_m;
+  }
+
+  std::span<const DrivenJoint> driven_;
+  std::vector<int> next_;
+  std::span<const Transform> sourceRest_, targetRest_;
+  RestAlignment& out_;
+};
+
+}  // namespace
+
 RestAlignment alignRest(std::span<const DrivenJoint> driven, std::span<const Transform> sourceRest,
                         std::span<const JointMeaning> sourceMeanings,
                         std::span<const Transform> targetRest,
@@ -135,49 +199,7 @@ RestAlignment alignRest(std::span<const DrivenJoint> driven, std::span<const Tra
   RestAlignment out;
   out.toTarget =
       figureAxes(targetRest, targetMeanings) * figureAxes(sourceRest, sourceMeanings).transpose();
-  out.turn.assign(driven.size(), Mat3::Identity());
-  out.axis.assign(driven.size(), Vec3::Zero());
-  const Bones bones = bonesOf(driven);
-  const auto source = [&](int d) {
-    return Vec3(out.toTarget *
-                sourceRest[static_cast<std::size_t>(driven[static_cast<std::size_t>(d)].source)]
-                    .translation_m);
-  };
-  const auto target = [&](int d) {
-    return targetRest[static_cast<std::size_t>(driven[static_cast<std::size_t>(d)].target)]
-        .translation_m;
-  };
-  for (std::size_t d = 0; d < driven.size(); ++d) {
-    const int self = static_cast<int>(d), next = bones.next[d];
-    if (driven[d].above >= 0) out.turn[d] = out.turn[static_cast<std::size_t>(driven[d].above)];
-    if (driven[d].inRun > 0) {
-      out.axis[d] = out.axis[static_cast<std::size_t>(driven[d].above)];
-      continue;
-    }
-    const BodyPart part = driven[d].meaning.part;
-    if (part == BodyPart::foot || part == BodyPart::toe) {
-      // Both stand with flat soles, however high the ankle lies: only the heading may differ.
-      if (driven[d].above < 0 || part == BodyPart::toe) continue;
-      const auto shin = static_cast<std::size_t>(driven[d].above);
-      const Vec3 down = -Vec3::UnitY();
-      const bool splayed = angle(out.axis[shin], down) > kSplayed_rad;
-      const Mat3 sole = splayed ? shortestArc(down, out.axis[shin]) : Mat3::Identity();
-      out.turn[d] = sole;
-      if (next < 0) continue;
-      const Vec3 up = sole.col(1);
-      out.axis[d] = source(next) - source(self);
-      const Vec3 from = perpendicular(sole * (target(next) - target(self)), up);
-      const Vec3 to = perpendicular(out.axis[d], up);
-      out.turn[d] = shortestArc(from, to) * sole;
-      continue;
-    }
-    if (next < 0) continue;
-    const Vec3 from = out.turn[d] * (target(next) - target(self));
-    out.axis[d] = source(next) - source(self);
-    if (angle(from, out.axis[d]) > toleranceOf(part)) {
-      out.turn[d] = shortestArc(from, out.axis[d]) * out.turn[d];
-    }
-  }
+  Aligner(driven, sourceRest, targetRest, out).run();
   return out;
 }
 
