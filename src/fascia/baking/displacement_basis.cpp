@@ -119,8 +119,8 @@ DisplacementBasis principalFields(Eigen::MatrixXf& displacements, int most, doub
       tallProduct(displacements, displacements));
   const Index frames = displacements.cols();
   const Eigen::VectorXd energy = solver.eigenvalues().reverse().cwiseMax(0);
-  const double entries =
-      static_cast<double>(displacements.rows() / 3) * static_cast<double>(frames);
+  const Index points = displacements.rows() / 3;
+  const double entries = static_cast<double>(points * frames);
   Index count = 0;
   double left = energy.sum();
   while (count < std::min<Index>(most, frames) && energy[count] > kNoEigenvalue * energy[0] &&

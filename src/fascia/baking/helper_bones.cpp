@@ -166,6 +166,7 @@ HelperSeed seedHelper(const SkinningProblem& problem, const PointGraph& graph,
   double largest = 0;
   for (const std::uint32_t i : patch) largest = std::max(largest, squaredError[i]);
   std::vector<double> say;
+  say.reserve(patch.size());
   for (const std::uint32_t i : patch) say.push_back(largest > 0 ? squaredError[i] / largest : 1.0);
   seed.parent = parentOf(problem, rigWeights, bones, patch, say);
   const std::span<const Transform> like = bones.track(static_cast<std::size_t>(seed.parent));

@@ -97,7 +97,8 @@ void BodySurface::addSamples(const RiggedModel& model, std::uint32_t triangle, d
     for (int j = 0; j < 2 * (splits - i) - 1; ++j) {
       // Upright pieces at even j, those standing on their heads between them.
       const double third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-      const double u = (i + third) * piece, v = (j / 2 + third) * piece;
+      const int row = j / 2;
+      const double u = (i + third) * piece, v = (row + third) * piece;
       const Vec3 share(1 - u - v, u, v);
       SurfaceSample sample;
       sample.position_m = share[0] * p[0] + share[1] * p[1] + share[2] * p[2];

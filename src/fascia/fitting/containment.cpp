@@ -102,7 +102,8 @@ bool fitInside(const BodySurface& surface, const MirrorPlane* plane, double marg
     const Clash clash = findClash(surface, plane, margin_m, solid);
     if (clash.skin.empty()) return true;
     const std::size_t step = clash.skin.size() / kMostAdded + 1;
-    const double count = static_cast<double>((clash.skin.size() + step - 1) / step);
+    const std::size_t added = (clash.skin.size() + step - 1) / step;
+    const double count = static_cast<double>(added);
     for (std::size_t i = 0; i < clash.skin.size(); i += step)
       target.bounds.push_back(
           {clash.skin[i], 2 * margin_m, kViolationWeight * std::max(1.0, 8 / count)});

@@ -16,8 +16,7 @@ constexpr double kBoundWeight = 40;  // of all near skin together; that to be re
 template <class T>
 double quantile(std::vector<T> values, double share) {
   if (values.empty()) return 0;
-  const auto rank =
-      static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const std::ptrdiff_t rank = std::lround(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

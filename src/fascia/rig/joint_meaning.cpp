@@ -183,6 +183,7 @@ std::vector<JointMeaning> guessMeanings(std::span<const RigJoint> joints) {
   for (const RigJoint& joint : joints) readings.push_back(readJointName(joint.name));
   const Settler settler(readings);
   std::vector<JointMeaning> meanings;
+  meanings.reserve(readings.size());
   for (const JointReading& reading : readings) meanings.push_back(settler.settle(reading));
   settleTrunk(joints, meanings);
   return meanings;

@@ -62,6 +62,7 @@ std::vector<Vec3> pointNormals(const RiggedModel& rig) {
   std::vector<Eigen::Vector3f> normals;
   computeNormals(rig.points_m, rig.triangles, normals);
   std::vector<Vec3> out;
+  out.reserve(normals.size());
   for (const Eigen::Vector3f& n : normals) out.push_back(n.cast<double>());
   return out;
 }

@@ -111,8 +111,8 @@ Stage makeStage(const RiggedModel& model, const SampledMotion& motion, double lo
   Stage stage{std::make_shared<const RiggedModel>(std::move(copy)), {}};
   // At least one step, or there would be nothing to simulate.
   const double duration_s = std::min(longest_s, motion.duration_s());
-  const auto frames =
-      std::max<std::size_t>(2, static_cast<std::size_t>(duration_s * kContestRate_hz + 0.5) + 1);
+  const auto frames = static_cast<std::size_t>(
+      std::max<long long>(2, std::llround(duration_s * kContestRate_hz) + 1));
   stage.motions.resize(frames);
   std::vector<Transform> world;
   for (std::size_t f = 0; f < frames; ++f) {
