@@ -27,8 +27,10 @@ struct SampledMotion {
   }
 };
 
-// A joint's frame in its parent's at a time of a motion, interpolated between frames; clamped, or
-// wrapped if the motion loops. `joint` counts within the motion.
+// A joint's frame in its parent's at a time of a motion; clamped, or wrapped if the motion loops.
+// Between frames it moves along a cubic that passes through them with a steady velocity (straight
+// pieces would kick soft skin at every frame) and that does not swing over where it jumps or stops.
+// `joint` counts within the motion.
 Transform sampleJoint(const SampledMotion& motion, std::size_t joint, double time_s);
 
 }  // namespace fascia
