@@ -65,7 +65,7 @@ class ScalarLeapfrog final : public Scheme {
     }
   }
 
-  // As PointStep in skin/grid_kernels.cpp.
+  // As PointStep in skin/point_step-inl.h.
   void move(std::size_t k, const PointSurroundings& around, float time_s, VectorArray& position,
             VectorArray& velocity) const {
     const PointModel& p = skin_.points();
@@ -75,8 +75,10 @@ class ScalarLeapfrog final : public Scheme {
     Vec3f closing = Vec3f::Zero();
     if (s.extension > 0) {
       f -= p.tissueStiffness[k] * s.extension * s.direction;
-      closing = coefficients_.strandGain[k] * (v - at(around.anchorVelocity, k)).dot(s.direction) *
-                s.direction;
+      const Vec3f relative = v - at(around.anchorVelocity, k);
+      closing =
+          coefficients_.strandGain[k] *
+          (p.tissueRestLength[k] == 0 ? relative : Vec3f(relative.dot(s.direction) * s.direction));
     }
     v = coefficients_.keep[k] * v + coefficients_.gain[k] * f - closing;
     r += coefficients_.step_s * v;

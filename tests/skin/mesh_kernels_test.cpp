@@ -98,13 +98,16 @@ double plainStep(const SteppedSheet& s, std::size_t k, Vec3 force, double time_s
   const Vec3 anchorVelocity = pointOf(s.around.anchorVelocity, k);
   const Vec3 strand = r - pointOf(s.around.anchor, k) - (time_s - h) * anchorVelocity;
   const double length = strand.norm(), extension = length - p.tissueRestLength[k];
-  double closing = 0;
+  Vec3 closing = Vec3::Zero();
   if (extension > 0 && length > 0) {
     force -= p.tissueStiffness[k] * extension / length * strand;
-    closing = s.step.strandGain[k] * (v - anchorVelocity).dot(strand) / (length * length);
+    const Vec3 relative = v - anchorVelocity;
+    closing =
+        s.step.strandGain[k] *
+        (p.tissueRestLength[k] == 0 ? relative : relative.dot(strand) / (length * length) * strand);
   }
   force += s.step.weight[k] * s.gravity_m_per_s2;
-  v = s.step.keep[k] * v + s.step.gain[k] * force - closing * strand;
+  v = s.step.keep[k] * v + s.step.gain[k] * force - closing;
   r += h * v;
   const Vec3 normal = pointOf(s.around.normal, k), flesh = pointOf(s.around.fleshVelocity, k);
   const double depth = normal.dot(r) - s.around.offset[k] - time_s * normal.dot(flesh);

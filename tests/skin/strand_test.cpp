@@ -101,6 +101,23 @@ TEST(Strand, PullsAlongItself) {
   EXPECT_LT((acceleration - expected).norm(), 2e-3 * expected.norm());
 }
 
+TEST(Strand, WithoutARestLengthDampsAlsoAcrossItself) {
+  const Vec3 across(0.6, 0, -0.8);  // perpendicular to the hanging strand
+  for (const double restLength_m : {0.0, 0.1}) {
+    const Strand s{.damping_Ns_per_m = 2, .restLength_m = restLength_m};
+    PinnedSheet points = hangingPoints(s, 0.4);
+    points.gravity.setZero();
+    test::forEachPoint(points.layout,
+                       [&](int, int, std::size_t k) { test::put(points.velocity, k, across); });
+    const double h = 1e-4;
+    points.prepare(h);
+    points.run(1);
+    const std::size_t k = points.layout.at(8, 7);
+    const double braking = (1 - test::at(points.velocity, k).dot(across)) / h;
+    EXPECT_NEAR(braking, restLength_m > 0 ? 0 : s.damping_Ns_per_m / s.mass_kg, 0.05);
+  }
+}
+
 TEST(Strand, DampsRelativeToItsMovingAnchor) {
   const Strand s{.stiffness_N_per_m = 0.01, .damping_Ns_per_m = 5, .restLength_m = 0.01};
   PinnedSheet points = hangingPoints(s, 0.4);

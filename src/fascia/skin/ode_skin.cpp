@@ -50,7 +50,7 @@ OdeSkin::OdeSkin(const Skin& skin)
     for (std::size_t c = 0; c < 3; ++c) inverseMass_[3 * p + c] = inverse;
   }
   ode_.resize(inverseMass_.size());
-  dampingDirection_.resize(points_.size());
+  strandDamping_.resize(points_.size());
   dampingPlace_.reserve(inverseMass_.size());
   for (VectorArray* a : {&position_, &velocity_, &force_}) a->resize(skin.topology().storage());
 }
@@ -119,14 +119,20 @@ void OdeSkin::addPositionForces(double t_s, std::span<const double> r, std::span
   }
 }
 
+// Strands damp along themselves; without a rest length they hold a point from all sides, and damp
+// so.
+Mat3 OdeSkin::dampingOf(const Point& point, const Strand& strand) const {
+  if (!(strand.squared > 0)) return Mat3::Zero();
+  if (point.restLength == 0) return point.damping * Mat3::Identity();
+  return point.damping / strand.squared * strand.way * strand.way.transpose();
+}
+
 void OdeSkin::prepareDamping(double t_s, std::span<const double> r) {
   if (t_s == dampingTime_s_ && std::ranges::equal(r, dampingPlace_)) return;
   dampingTime_s_ = t_s;
   dampingPlace_.assign(r.begin(), r.end());
   for (std::size_t p = 0; p < points_.size(); ++p) {
-    const Strand s = strand(p, t_s, r);
-    dampingDirection_[p] = s.squared > 0 ? Vec3(std::sqrt(points_[p].damping / s.squared) * s.way)
-                                         : Vec3(Vec3::Zero());
+    strandDamping_[p] = dampingOf(points_[p], strand(p, t_s, r));
   }
 }
 
@@ -135,9 +141,7 @@ void OdeSkin::addVelocityForces(double t_s, std::span<const double> r, std::span
   prepareDamping(t_s, r);
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const Vec3 speed(v[3 * p], v[3 * p + 1], v[3 * p + 2]);
-    const Vec3& direction = dampingDirection_[p];
-    const Vec3 force =
-        points_[p].drag * speed + direction.dot(speed - anchors_[p].velocity) * direction;
+    const Vec3 force = points_[p].drag * speed + strandDamping_[p] * (speed - anchors_[p].velocity);
     for (std::size_t c = 0; c < 3; ++c) f[3 * p + c] -= force[static_cast<Eigen::Index>(c)];
   }
 }
@@ -152,12 +156,12 @@ void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<con
     const Point& point = points_[p];
     const Strand s = strand(p, t_s, r);
     // Slack strands keep their zeros, so that the pattern stays and is analysed once.
-    Mat3 stiffness = Mat3::Zero(), damping = point.drag * Mat3::Identity();
+    const Mat3 damping = point.drag * Mat3::Identity() + dampingOf(point, s);
+    Mat3 stiffness = Mat3::Zero();
     if (s.squared > 0) {
       const Mat3 along = s.way * s.way.transpose() / s.squared;
       const double stretched = 1 - point.restLength / std::sqrt(s.squared);
       stiffness = point.stiffness * (along + stretched * (Mat3::Identity() - along));
-      damping += point.damping * along;
     }
     const int row = static_cast<int>(3 * p);
     for (int a = 0; a < 3; ++a) {

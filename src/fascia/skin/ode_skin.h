@@ -53,6 +53,7 @@ class OdeSkin final : public SecondOrderSystem {
     return {way, taut ? squared : 0};
   }
   void load(std::span<const double> r, VectorArray& out) const;
+  Mat3 dampingOf(const Point& point, const Strand& strand) const;
   void prepareDamping(double t_s, std::span<const double> r);
 
   const Skin& skin_;
@@ -61,9 +62,9 @@ class OdeSkin final : public SecondOrderSystem {
   std::vector<Point> points_;
   std::vector<Anchor> anchors_;
   std::unique_ptr<SurfaceStepper> surface_;
-  // Damping along the strands for the positions below: f −= g (g·(v − v_anchor)). Leapfrog's inner
+  // Damping of the strands for the positions below: f −= C (v − v_anchor). Leapfrog's inner
   // iteration asks for velocity forces several times at one place.
-  std::vector<Vec3> dampingDirection_;
+  std::vector<Mat3> strandDamping_;
   std::vector<double> dampingPlace_;
   double dampingTime_s_ = 0;
   OdeState ode_;

@@ -31,24 +31,27 @@ struct PointStep {
     V3 position = r.at(local), velocity = v.at(local);
     if (m.extraForce) force = force + pointers(*m.extraForce).at(k);
 
-    // Tissue, spec L5: pulls only beyond its rest length, along the strand.
+    // Tissue, spec L5: pulls only beyond its rest length, along the strand. Strands without one
+    // hold a point from all sides, and damp it so.
     const V3 anchorVelocity = pointers(around.anchorVelocity).at(k);
     const V3 strand = position - mulAdd(before, anchorVelocity, pointers(around.anchor).at(k));
     const V squared = hn::Add(dot(strand, strand), hn::Set(d, 1e-16f));
     const V inverse = inverseRoot(squared);
-    const V extension = hn::Sub(hn::Mul(squared, inverse), load(p.tissueRestLength));
+    const V restLength = load(p.tissueRestLength);
+    const V extension = hn::Sub(hn::Mul(squared, inverse), restLength);
     const auto taut = hn::Gt(extension, zero);
     const V pull =
         hn::IfThenElseZero(taut, hn::Mul(hn::Mul(load(p.tissueStiffness), extension), inverse));
-    const V closing = hn::IfThenElseZero(
-        taut, hn::Mul(load(s.strandGain),
-                      hn::Mul(dot(velocity - anchorVelocity, strand), hn::Mul(inverse, inverse))));
+    const V3 relativeVelocity = velocity - anchorVelocity;
+    const V along = hn::Mul(dot(relativeVelocity, strand), hn::Mul(inverse, inverse));
+    const V3 closing = select(hn::Eq(restLength, zero), relativeVelocity, scaled(along, strand));
+    const V damped = hn::IfThenElseZero(taut, load(s.strandGain));
 
     const V weight = load(s.weight);
     const V3 gravity{hn::Set(d, m.gravity[0]), hn::Set(d, m.gravity[1]), hn::Set(d, m.gravity[2])};
     force = mulAdd(weight, gravity, mulAdd(hn::Neg(pull), strand, force));
     velocity = mulAdd(load(s.gain), force, scaled(load(s.keep), velocity));
-    velocity = mulAdd(hn::Neg(closing), strand, velocity);
+    velocity = mulAdd(hn::Neg(damped), closing, velocity);
     position = mulAdd(hn::Set(d, s.step_s), velocity, position);
 
     // Flesh as a moving half space, spec L10; velocities are relative to the flesh.
@@ -60,10 +63,10 @@ struct PointStep {
     if (!hn::AllFalse(d, inside)) {
       position = mulAdd(hn::Neg(depth), normal, position);
       const V3 relative = velocity - flesh;
-      const V along = dot(relative, normal);
+      const V outward = dot(relative, normal);
       const V bounced =
-          hn::IfThenElse(hn::Lt(along, zero), hn::Mul(hn::Set(d, -s.bounce), along), along);
-      const V3 tangential = scaled(hn::Set(d, s.slide), mulAdd(hn::Neg(along), normal, relative));
+          hn::IfThenElse(hn::Lt(outward, zero), hn::Mul(hn::Set(d, -s.bounce), outward), outward);
+      const V3 tangential = scaled(hn::Set(d, s.slide), mulAdd(hn::Neg(outward), normal, relative));
       const V3 after = flesh + mulAdd(bounced, normal, tangential);
       velocity = select(inside, after, velocity);
     }
