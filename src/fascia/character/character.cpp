@@ -185,6 +185,7 @@ CharacterState initialState(const Character& character, int motion) {
     for (int i = 0; i < frames; ++i)
       advanceSkin(*character.skin(), frozen, i * frame, (i + 1) * frame, state.skin,
                   state.workspace, ignored);
+    state.skin.starting = true;
   }
   poseLayers(character, motion, true, state);
   return state;

@@ -260,7 +260,7 @@ void MeshSkinBuilder::setQuantities() {
   const std::size_t storage = skin_.rest_.size();
   std::vector<float> thicknesses;
   for (std::size_t p = 0; p < gap_.size(); ++p)
-    if (covered_[p]) thicknesses.push_back(std::max(gap_[p], 0.f));
+    if (covered_[p] && !fixed_[p]) thicknesses.push_back(std::max(gap_[p], 0.f));
   const double usual = std::max(medianOf(std::move(thicknesses)), 1e-4 * skin_.size_m_);
 
   SkinQuantities& q = skin_.quantities_;

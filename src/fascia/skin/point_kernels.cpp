@@ -1,6 +1,7 @@
 #include <fascia/skin/point_kernels.h>
 
 #include <cmath>
+#include <utility>
 
 // SSSE3 and AVX3_DL add code, not speed, here.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -170,21 +171,22 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
   return hn::GetLane(hn::MaxOfLanes(d, fastest));
 }
 
-float followImpl(const VectorArray& anchor, const VectorArray& nextAnchor, float rate,
-                 const FloatArray* carried, VectorArray& anchorVelocity, VectorArray& velocity) {
+float followImpl(const VectorArray& nextAnchor, float rate, const FloatArray* carried,
+                 PointSurroundings& around, VectorArray& velocity) {
   const D d;
-  const std::size_t n = anchor.size() / hn::Lanes(d) * hn::Lanes(d);
+  const std::size_t n = nextAnchor.size() / hn::Lanes(d) * hn::Lanes(d);
+  const Pointers anchor = pointers(std::as_const(around.anchor));
+  const MutablePointers anchorVelocity = pointers(around.anchorVelocity);
+  const MutablePointers flesh = pointers(around.fleshVelocity), v = pointers(velocity);
   V farthest = hn::Zero(d);
   for (std::size_t k = 0; k < n; k += hn::Lanes(d)) {
-    const V3 way = pointers(nextAnchor).at(k) - pointers(anchor).at(k);
+    const V3 way = pointers(nextAnchor).at(k) - anchor.at(k);
     farthest = hn::Max(farthest, dot(way, way));
     const V3 next = scaled(hn::Set(d, rate), way);
-    if (carried) {
-      const V share = hn::LoadU(d, carried->data() + k);
-      const MutablePointers v = pointers(velocity);
-      v.set(k, mulAdd(share, next - pointers(anchorVelocity).at(k), v.at(k)));
-    }
-    pointers(anchorVelocity).set(k, next);
+    const V3 change = next - anchorVelocity.at(k);
+    if (carried) v.set(k, mulAdd(hn::LoadU(d, carried->data() + k), change, v.at(k)));
+    flesh.set(k, flesh.at(k) + change);
+    anchorVelocity.set(k, next);
   }
   return hn::GetLane(hn::MaxOfLanes(d, farthest));
 }
@@ -249,10 +251,9 @@ float finishContact(const PointBlock& block, bool any, float reach_m, float rest
                                           velocity, around);
 }
 
-float followAnchors(const VectorArray& anchor, const VectorArray& nextAnchor, float rate_per_s,
-                    const FloatArray* carried, VectorArray& anchorVelocity, VectorArray& velocity) {
-  return HWY_DYNAMIC_DISPATCH(followImpl)(anchor, nextAnchor, rate_per_s, carried, anchorVelocity,
-                                          velocity);
+float followAnchors(const VectorArray& nextAnchor, float rate_per_s, const FloatArray* carried,
+                    PointSurroundings& around, VectorArray& velocity) {
+  return HWY_DYNAMIC_DISPATCH(followImpl)(nextAnchor, rate_per_s, carried, around, velocity);
 }
 
 void followCarrier(const VectorArray& next, const FloatArray& carried, VectorArray& carrierVelocity,

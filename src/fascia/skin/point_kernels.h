@@ -71,11 +71,11 @@ float finishContact(const PointBlock& block, bool any, float reach_m, float rest
                     const PointModel& points, const ContactLanes& lanes, VectorArray& position,
                     VectorArray& velocity, PointSurroundings& around);
 
-// Anchor velocities of the coming interval; velocities of points with added mass follow their
-// anchor's change (see leapfrog.h). `carried` may be null. Returns the largest squared way of an
-// anchor. All arrays in whole.
-float followAnchors(const VectorArray& anchor, const VectorArray& nextAnchor, float rate_per_s,
-                    const FloatArray* carried, VectorArray& anchorVelocity, VectorArray& velocity);
+// Anchor velocities of the coming interval. What anchors change in velocity, the flesh of the half
+// spaces beside them does too; velocities of points with added mass follow in part (see leapfrog.h;
+// `carried` may be null). Returns the largest squared way of an anchor. All arrays in whole.
+float followAnchors(const VectorArray& nextAnchor, float rate_per_s, const FloatArray* carried,
+                    PointSurroundings& around, VectorArray& velocity);
 
 // The same for points that ride on a coarse surface: `next` is its velocity, `carrierVelocity` what
 // it was; writes next to carrierVelocity.

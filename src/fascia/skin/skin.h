@@ -148,6 +148,7 @@ struct SkinState {
   std::vector<Transform> joints;   // the pose of the last interval's end
   float maxSpeed_m_per_s = 0;      // at the end of the last interval
   bool ready = false;              // surroundings belong to this state's time
+  bool starting = false;           // moves with its flesh from the first interval on, unlagging
 
   void addTo(StateHash& hash, const SkinTopology& topology) const;
 };

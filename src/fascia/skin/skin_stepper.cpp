@@ -24,6 +24,9 @@ constexpr double kJump = 0.2;
 constexpr float kAnchorReach = 0.01f;
 // Points that may slide only so far need no wider one, however hard a body is shaken.
 constexpr float kSlidingReach = 0.02f;
+// How long an anchor takes, mostly, to where the flesh leads it aside: limbs of imported figures
+// dive into other flesh and out of it within a frame, and skin that followed at once would tremble.
+constexpr double kAnchorSlide_s = 0.03;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
 
@@ -171,7 +174,7 @@ void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinStat
     for (std::size_t k = 0; k < coarseStart_.size(); ++k)
       (coarseVelocity_.*axis)[k] = ((coarse.position.*axis)[k] - (coarseStart_.*axis)[k]) * rate;
   prolongation_.apply(coarseVelocity_, carrierNext_);
-  followCarrier(carrierNext_, coefficients_.carried, state.carrierVelocity, state.velocity);
+  followCarrier(carrierNext_, carried(state), state.carrierVelocity, state.velocity);
   watch.lap(stats.other_s);
 }
 
@@ -187,15 +190,38 @@ void SkinStepper::placeAnchors(const SkinPose& pose, VectorArray& anchor) {
                          ignoredVelocity_, ignoredSurroundings_);
 }
 
+// Brings the next anchors from where they were beside their joints nearer to where flesh leads
+// them.
+void SkinStepper::slideAnchors(double duration_s, const PointSurroundings& around) {
+  const auto share = static_cast<float>(1 - std::exp(-duration_s / kAnchorSlide_s));
+  for (const auto axis : kAxes) {
+    const FloatArray &anchor = around.anchor.*axis, &carried = around.carried.*axis,
+                     &nextCarried = nextCarried_.*axis;
+    FloatArray& next = nextAnchor_.*axis;
+    for (std::size_t k = 0; k < next.size(); ++k) {
+      const float stayed = nextCarried[k] + (anchor[k] - carried[k]);
+      next[k] = stayed + share * (next[k] - stayed);
+    }
+  }
+}
+
+// The share of its anchor's changes of velocity that each point takes over.
+const FloatArray& SkinStepper::carried(const SkinState& state) {
+  if (!state.starting) return coefficients_.carried;
+  wholly_.assign(skin_->topology().storage(), 1.f);
+  return wholly_;
+}
+
 // Where anchors and fixed points go during the interval.
 void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& state,
                            SkinStats& stats) {
   PointSurroundings& around = state.surroundings;
   placeAnchors(pose, nextAnchor_);
+  if (skin_->sense()) slideAnchors(duration_s, around);
   const auto rate = static_cast<float>(1 / duration_s);
-  const float way = followAnchors(around.anchor, nextAnchor_, rate,
-                                  ode_ || coarse_ ? nullptr : &coefficients_.carried,
-                                  around.anchorVelocity, state.velocity);
+  const float way = followAnchors(nextAnchor_, rate, ode_ || coarse_ ? nullptr : &carried(state),
+                                  around, state.velocity);
+  state.starting = false;
   const auto jump = static_cast<float>(kJump * skin_->size_m());
   if (!(way < jump * jump)) {
     // A posture jump: the skin jumps with the flesh and starts anew from there.

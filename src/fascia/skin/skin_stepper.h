@@ -28,6 +28,8 @@ class SkinStepper {
                    SkinStats& stats);
   void rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void placeAnchors(const SkinPose& pose, VectorArray& anchor);
+  void slideAnchors(double duration_s, const PointSurroundings& around);
+  const FloatArray& carried(const SkinState& state);
   int chooseStep(double duration_s);
   void leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats);
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
@@ -42,6 +44,7 @@ class SkinStepper {
   SelfContact selfContact_;
   FatPressure fatPressure_;
   VectorArray nextAnchor_, nextCarried_, target_, ignoredVelocity_;
+  FloatArray wholly_;  // ones
   PointSurroundings ignoredSurroundings_;
   CarryScratch scratch_;
   std::unique_ptr<OdeSkin> ode_;
