@@ -26,10 +26,11 @@ namespace {
 SkinDef skinFor(const RiggedModel& model) {
   const double size = model.size_m();
   SkinDef skin;
-  skin.tissue.stiffness_N_per_m3 = 16000;
+  skin.tissue.stiffness_N_per_m3 = 20000;
   skin.tissue.damping_Ns_per_m3 = 300;
   skin.tissue.carry = 0.75;
-  const double evening_m = 0.018 * size;
+  skin.tissue.keep_volume = 1;
+  const double evening_m = 0.006 * size;
   const double stretch =
       std::clamp(skin.tissue.stiffness_N_per_m3 * evening_m * evening_m, 1e-3, 1e6);
   skin.material.stretch_u_N_per_m = skin.material.stretch_v_N_per_m = stretch;

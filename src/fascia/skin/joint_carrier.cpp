@@ -14,18 +14,14 @@ constexpr float kLeastWeight = 1e-4f;
 // Where a point turns about, see the header. `shares` is scratch with an entry per joint.
 Vec3 centerOfRotation(const std::vector<JointCarrier::Joint>& joints,
                       const JointCarrier::Point& point, std::vector<double>& shares) {
-  std::fill(shares.begin(), shares.end(), 0.0);
-  for (std::size_t i = 0; i < PointWeights::kMost; ++i)
-    shares[point.weights.joint[i]] += point.weights.weight[i];
+  subtreeShares(joints, point.weights, shares);
   Vec3 sum = Vec3::Zero();
   double total = 0;
-  // Children come after parents: when a joint is reached its share is that of its whole subtree.
   for (std::size_t j = joints.size(); j-- > 0;) {
     if (joints[j].parent < 0) continue;
     const double coupling = std::max(0.0, shares[j] * (1 - shares[j]));
     sum += coupling * joints[j].rest_world.translation_m;
     total += coupling;
-    shares[static_cast<std::size_t>(joints[j].parent)] += shares[j];
   }
   return total > 1e-9 ? Vec3(sum / total) : point.rest_world;
 }
@@ -42,6 +38,16 @@ Eigen::Vector3f turned(const Eigen::Vector4f& q, const Eigen::Vector3f& v) {
 }
 
 }  // namespace
+
+void subtreeShares(std::span<const JointCarrier::Joint> joints, const PointWeights& weights,
+                   std::span<double> shares) {
+  std::fill(shares.begin(), shares.end(), 0.0);
+  for (std::size_t i = 0; i < PointWeights::kMost; ++i)
+    shares[weights.joint[i]] += weights.weight[i];
+  // Children come after parents: when a joint is reached its share is that of its whole subtree.
+  for (std::size_t j = joints.size(); j-- > 0;)
+    if (joints[j].parent >= 0) shares[static_cast<std::size_t>(joints[j].parent)] += shares[j];
+}
 
 JointCarrier::JointCarrier(std::vector<Joint> joints, std::span<const Point> points)
     : joints_(std::move(joints)) {

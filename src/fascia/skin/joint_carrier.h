@@ -60,4 +60,8 @@ class JointCarrier {
   std::vector<Eigen::Vector4f> arm_;           // from the centre to the point, w = 0
 };
 
+// How much of a point hangs on each joint or one beyond it, one entry per joint.
+void subtreeShares(std::span<const JointCarrier::Joint> joints, const PointWeights& weights,
+                   std::span<double> shares);
+
 }  // namespace fascia

@@ -27,8 +27,8 @@ constexpr double kYieldOfFat = 1.5, kLeastYield = 0.004;
 // size.
 constexpr double kSlideOfFat = 0.6, kLeastSlide = 0.0015;
 // How much firmer, and how much softer, the tissue is where the fat is thin or thick.
-constexpr double kFirmest = 6, kSoftest = 0.5;
-constexpr double kLightest = 0.3, kHeaviest = 2.5;
+constexpr double kFirmest = 6, kSoftest = 0.7;
+constexpr double kLightest = 0.3, kHeaviest = 1.5;
 // Pieces with a smaller share of the model's size are carried as they are.
 constexpr double kSmallPiece = 0.04;
 
@@ -344,11 +344,8 @@ void MeshSkinBuilder::makeModel() {
   }
   skin_.defaultStep_s_ = kStep_s;
   if (def_.contact.self) {
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    for (const auto& t : rig_.triangles)
-      triangles.push_back({storageOf_[t[0]], storageOf_[t[1]], storageOf_[t[2]]});
     skin_.selfContact_ = std::make_shared<SelfContactModel>(prepareSelfContact(
-        triangles, skin_.rest_, skin_.blocks_, static_cast<float>(def_.contact.gap_m)));
+        storedTriangles(), skin_.rest_, skin_.blocks_, static_cast<float>(def_.contact.gap_m)));
   }
 
   MeshTopology::Drawn drawn;
@@ -364,44 +361,52 @@ void MeshSkinBuilder::makeModel() {
 void MeshSkinBuilder::carryPoints() {
   const std::vector<Vec3> normals = pointNormals(rig_);
   const SkinQuantities& q = skin_.quantities_;
-  std::vector<JointCarrier::Point> all, anchors, fixed;
+  std::vector<JointCarrier::Point> all, inner,
+      fixed;  // inner: the strands' ends, and what is fixed
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const std::uint32_t p = order_[k];
     JointCarrier::Point point{k, modelPoint(rig_, p), rig_.weights[p]};
     // Fat that was put on or taken away moves the skin with it.
     point.rest_world += double{q[SkinQuantity::fat][k] - naturalFat_[k]} * normals[p];
     all.push_back(point);
-    if (k >= elasticCount_) {
+    if (k >= elasticCount_)
       fixed.push_back(point);
-      continue;
-    }
-    point.rest_world -= sag(k);
-    anchors.push_back(point);
+    else
+      point.rest_world -= sag(k);
+    inner.push_back(point);
   }
   skin_.allByJoints_ = JointCarrier(joints_, all);
-  skin_.anchorsByJoints_ = JointCarrier(joints_, anchors);
+  skin_.anchorsByJoints_ = JointCarrier(joints_, std::span(inner).first(elasticCount_));
   skin_.fixedByJoints_ = JointCarrier(joints_, fixed);
-  if (def_.fat.bulk_Pa > 0) layFat(all, anchors);
+  if (def_.tissue.keep_volume > 0) {
+    skin_.jointVolume_ = JointVolume(joints_, inner, storedTriangles(), placed(inner));
+    skin_.keptVolume_ = static_cast<float>(def_.tissue.keep_volume);
+  }
+  if (def_.fat.bulk_Pa > 0) layFat(placed(all), placed(inner));
 }
 
-// The fat's volume is measured between where the rest posture puts the skin and its anchors.
-void MeshSkinBuilder::layFat(const std::vector<JointCarrier::Point>& skin,
-                             const std::vector<JointCarrier::Point>& anchors) {
-  const auto placed = [&](const std::vector<JointCarrier::Point>& points) {
-    VectorArray out = skin_.rest_;
-    for (const JointCarrier::Point& p : points) {
-      const Eigen::Vector3f at = p.rest_world.cast<float>();
-      out.x[p.point] = at.x(), out.y[p.point] = at.y(), out.z[p.point] = at.z();
-    }
-    return out;
-  };
+VectorArray MeshSkinBuilder::placed(const std::vector<JointCarrier::Point>& points) const {
+  VectorArray out = skin_.rest_;
+  for (const JointCarrier::Point& p : points) {
+    const Eigen::Vector3f at = p.rest_world.cast<float>();
+    out.x[p.point] = at.x(), out.y[p.point] = at.y(), out.z[p.point] = at.z();
+  }
+  return out;
+}
+
+std::vector<TriangleMembrane::Corners> MeshSkinBuilder::storedTriangles() const {
   std::vector<TriangleMembrane::Corners> triangles;
   for (const auto& t : rig_.triangles)
     triangles.push_back({storageOf_[t[0]], storageOf_[t[1]], storageOf_[t[2]]});
+  return triangles;
+}
+
+// The fat's volume is measured between where the rest posture puts the skin and its anchors.
+void MeshSkinBuilder::layFat(const VectorArray& skin, const VectorArray& anchors) {
   std::vector<SolidId> solid;
   for (const std::uint32_t p : order_) solid.push_back(covered_[p] ? solid_[p] : SolidId());
   FatPressureModel model =
-      prepareFatPressure({def_.fat.bulk_Pa, triangles, placed(skin), placed(anchors),
+      prepareFatPressure({def_.fat.bulk_Pa, storedTriangles(), skin, anchors,
                           skin_.quantities_[SkinQuantity::fat], solid, skin_.points_});
   if (!model.layers.empty())
     skin_.fatPressure_ = std::make_shared<FatPressureModel>(std::move(model));

@@ -34,8 +34,9 @@ class MeshSkinBuilder {
   void setQuantities();
   void makeModel();
   void carryPoints();
-  void layFat(const std::vector<JointCarrier::Point>& skin,
-              const std::vector<JointCarrier::Point>& anchors);
+  void layFat(const VectorArray& skin, const VectorArray& anchors);
+  VectorArray placed(const std::vector<JointCarrier::Point>& points) const;  // the rest elsewhere
+  std::vector<TriangleMembrane::Corners> storedTriangles() const;
   TriangleMembrane makeMembrane() const;
   Vec3 sag(std::size_t k) const;
 

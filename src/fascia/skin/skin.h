@@ -16,6 +16,7 @@
 #include <fascia/skin/flesh_contact.h>
 #include <fascia/skin/grid_topology.h>
 #include <fascia/skin/joint_carrier.h>
+#include <fascia/skin/joint_volume.h>
 #include <fascia/skin/leapfrog.h>
 #include <fascia/skin/point_model.h>
 #include <fascia/skin/quantities.h>
@@ -61,6 +62,7 @@ struct SkinPose {
 struct CarryScratch {
   VectorArray points;
   std::vector<JointCarrier::Motion> motion;
+  JointVolume::Scratch volume;
 };
 
 // A constant elastic skin: geometry of rest, material, anchors. Spec L2–L6, L14, L21.
@@ -108,7 +110,8 @@ class Skin {
   };
   const std::vector<Fixed>& fixed() const { return fixed_; }
 
-  // Where a pose carries things. Each writes the entries of the points meant, and no others.
+  // Where a pose carries things. Each writes the entries of the points meant; the first also those
+  // of a mesh's fixed points.
   void placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
   void placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
   void placeAll(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
@@ -136,6 +139,8 @@ class Skin {
   TissueAnchors anchors_, carriers_;
   std::vector<Fixed> fixed_;
   JointCarrier anchorsByJoints_, fixedByJoints_, allByJoints_;
+  JointVolume jointVolume_;
+  float keptVolume_ = 0;  // share of it that bending joints do not lose
   std::shared_ptr<const Skin> coarse_;
 };
 

@@ -38,6 +38,8 @@ struct SkinTissueDef {
   std::optional<double> rest_length_m;  // [0, 1]; none = the length at attachment
   double carry = 0;  // [0, 1]; share of its anchor's changes of velocity that a point takes over at
                      // once: 0 shakes like jelly, 1 not at all
+  double keep_volume = 0;  // [0, 1]; on imported meshes: share of what a bending joint would lose
+                           // of its flesh that bulges out around it
 };
 
 // One end of the tube: a small ring of points fixed to a joint.

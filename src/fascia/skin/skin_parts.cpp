@@ -38,6 +38,7 @@ void SkinReport::checkValues(const SkinDef& def) const {
   for (std::size_t i = 0; i < def.brushes.size(); ++i)
     checkRange("/brushes/" + std::to_string(i) + "/radius_m", def.brushes[i].radius_m, 1e-6, 1e6);
   checkRange("/tissue/carry", def.tissue.carry, 0, 1);
+  checkRange("/tissue/keep_volume", def.tissue.keep_volume, 0, 1);
   checkRange("/fat/compressible", def.fat.compressible, 0, 0.95);
   checkRange("/fat/bulk_Pa", def.fat.bulk_Pa, 0, 1e5);
   checkRange("/contact/gap_m", def.contact.gap_m, 1e-9, 1);

@@ -13,10 +13,14 @@ void SkinState::addTo(StateHash& hash, const SkinTopology& topology) const {
 }
 
 void Skin::placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
-  if (isGrid())
+  if (isGrid()) {
     anchors_.place(*pose.field, scratch.points, out);
-  else
-    anchorsByJoints_.place(pose.joints, scratch.motion, out);
+    return;
+  }
+  anchorsByJoints_.place(pose.joints, scratch.motion, out);
+  if (jointVolume_.empty()) return;
+  fixedByJoints_.place(pose.joints, scratch.motion, out);
+  jointVolume_.restore(keptVolume_, scratch.volume, out);
 }
 
 void Skin::placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
