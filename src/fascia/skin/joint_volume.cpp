@@ -14,7 +14,7 @@ constexpr float kRim = 0.02f;
 constexpr std::size_t kLeastPoints = 8;  // fewer enclose nothing that one sees
 // The longest way out as a share of the limb's radius: what a pose takes beyond that is a fold of
 // the pose, not flesh that has to go somewhere.
-constexpr float kLongest = 0.5f;
+constexpr float kLongest = 0.25f;
 // How quickly the inner side of a bend is left out as the limb folds.
 constexpr float kLeaveOut = 2;
 
@@ -175,7 +175,7 @@ void JointVolume::moveOut(const Region& region, float missing_m3, Scratch& scrat
     area[i] = share * normal;
   }
   const float way_m =
-      sum_m2 > 0 ? std::clamp(missing_m3 / sum_m2, -region.longest_m, region.longest_m) : 0.f;
+      sum_m2 > 0 ? std::clamp(missing_m3 / sum_m2, 0.f, region.longest_m) : 0.f;
   for (std::size_t i = 0; i < region.points.size(); ++i) area[i] *= way_m;
 }
 

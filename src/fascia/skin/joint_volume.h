@@ -18,7 +18,8 @@ namespace fascia {
 //   d_p = λ w_p n_p,   λ = (V0 − V) / Σ A_p w_p,
 //
 // w_p a bell over the joint that leaves out the inner side of a bend, where two sides meet. In the
-// rest posture nothing moves.
+// rest posture nothing moves, and nothing where a pose gains volume: that is mostly a twist that
+// opens folds.
 class JointVolume {
  public:
   using Triangle = std::array<std::uint32_t, 3>;
