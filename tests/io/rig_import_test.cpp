@@ -266,6 +266,22 @@ TEST(RigImport, MendsWeightsAndSaysSo) {
   EXPECT_THAT(m.notes, Contains(HasSubstr("1 vertices are moved by joints that are not there")));
 }
 
+TEST(RigImport, SaysWhereItKeepsOnlyTheHeaviestWeights) {
+  TubeRig rig;
+  const std::vector<std::uint8_t> joints(4 * 12, 1);
+  const std::vector<float> weights(4 * 12, 0.1f);
+  std::string more;
+  for (const char* set : {"1", "2"})
+    more += std::string(R"(,"JOINTS_)") + set +
+            "\":" + std::to_string(rig.file.add(joints, 4, "VEC4")) + R"(,"WEIGHTS_)" + set +
+            "\":" + std::to_string(rig.file.add(weights, 4, "VEC4"));
+  rig.file.meshes = R"([{"primitives":[{"attributes":{)" + rig.attributes() + more +
+                    R"(},"indices":)" + std::to_string(rig.indices) + "}]}]";
+  const RiggedModel m = imported(rig);
+  expectSound(m);
+  EXPECT_THAT(m.notes, Contains(HasSubstr("vertices have more than 8 weights")));
+}
+
 TEST(RigImport, MendsPositionsAndTriangles) {
   TubeRig rig;
   std::vector<float> positions = TubeRig::ringPositions();

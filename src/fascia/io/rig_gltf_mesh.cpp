@@ -11,7 +11,7 @@ namespace fascia {
 namespace {
 
 constexpr std::size_t kMostVertices = 4'000'000, kMostCorners = 6 * kMostVertices;
-constexpr int kTriangles = 4, kStrip = 5, kFan = 6;
+constexpr int kTriangles = 4, kFan = 6;  // between them: strips
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -20,7 +20,7 @@ std::size_t at(int i) {
 // What was mended, over all primitives; told once.
 struct Mended {
   std::size_t notTriangles = 0, withoutPositions = 0, badCorners = 0, badPositions = 0;
-  std::size_t badJoints = 0, badSums = 0, badWeights = 0, unskinned = 0, morphed = 0;
+  std::size_t badJoints = 0, badSums = 0, badWeights = 0, tooMany = 0, unskinned = 0, morphed = 0;
   std::size_t hung = 0, loose = 0;
 
   void tell(std::vector<std::string>& notes) const {
@@ -34,6 +34,7 @@ struct Mended {
     note(badJoints, " vertices are moved by joints that are not there: by their others only");
     note(badWeights, " vertices have weights that are negative or no numbers: these count as 0");
     note(badSums, " vertices have weights that do not sum to one: scaled");
+    note(tooMany, " vertices have more than 8 weights: the heaviest 8 joints count");
     note(unskinned, " vertices have no weights: moved as the nearest ones that have");
     note(morphed, " primitives have morph targets: kept in the file, their base is simulated");
     note(hung, " meshes without a skin hang on a joint: they move rigidly with it");
@@ -229,6 +230,7 @@ class MeshReader {
     }
     mended_.badJoints += badJoint ? 1 : 0;
     mended_.badWeights += badWeight ? 1 : 0;
+    mended_.tooMany += influences.size() > PointWeights::kMost ? 1 : 0;
     if (!packWeights(influences, weights_[vertex])) {
       unskinned_.push_back({vertex, at(skin.joint[0])});
       return skin.whole;
