@@ -41,8 +41,11 @@ class Limb {
     for (int b = 0; b < kBones; ++b) {
       const std::string name = "bone" + std::to_string(b);
       const Vec3 offset(b > 0 ? kBone_m : 0, 0, 0);
-      def_.skeleton.joints.push_back({name, b > 0 ? "bone" + std::to_string(b - 1) : "", offset,
-                                      Vec3::Zero(), {{Dof::rz}, {Dof::ry}}});
+      def_.skeleton.joints.push_back({name,
+                                      b > 0 ? "bone" + std::to_string(b - 1) : "",
+                                      offset,
+                                      Vec3::Zero(),
+                                      {{Dof::rz}, {Dof::ry}}});
       rig.joints.push_back({name, b - 1, {Mat3::Identity(), Vec3(b * kBone_m, 0, 0)}});
       for (int m = 0; m <= kMuscles; ++m) addSolid(name, m);
     }
@@ -60,8 +63,7 @@ class Limb {
                    {{"taper", {0.2}}, {"bend", {0.15}}}};
     for (const char* half : {"half_x_m", "half_y_m"})
       if (muscle > 0)
-        solid.drivers.push_back(
-            {half, bone, Dof::rz, {{-1, 0.9 * size}, {1, 1.1 * size}}});
+        solid.drivers.push_back({half, bone, Dof::rz, {{-1, 0.9 * size}, {1, 1.1 * size}}});
     def_.flesh.solids.push_back(solid);
   }
   static PointWeights weightsAt(double x_m) {

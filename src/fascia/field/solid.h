@@ -49,7 +49,7 @@ class Solid {
     return layout_->paths[static_cast<std::size_t>(index)];
   }
   double parameter(int index) const { return values_[static_cast<std::size_t>(index)]; }
-  void setParameter(int index, double value);  // clamped to its range; NaN is ignored
+  void setParameter(int index, double value);          // clamped to its range; NaN is ignored
   void setParameters(std::span<const double> values);  // all of them, in one go
 
   const Shape& shape() const { return *layout_->shape; }

@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 // moved (by `push`), and that would be moved back into it, leaves along that one's surface instead:
 // in a crease between two solids going to and fro would take dozens of turns. Along the other's
 // surface t = n − (n·p) p the way out is depth / (n·t), n·t = 1 − (n·p)².
-HWY_INLINE void pushOut(V gap, V3 normal, V3& place, V3& push, V& pushed, V& clearance) {
+HWY_INLINE void pushOut(V gap, V3 normal, V3& place, V3& push, V& pushed) {
   const D d;
   const V zero = hn::Zero(d);
   const auto inside = hn::Lt(gap, zero);
@@ -25,9 +25,6 @@ HWY_INLINE void pushOut(V gap, V3 normal, V3& place, V3& push, V& pushed, V& cle
   const V3 along = mulAdd(hn::Neg(back), push, normal);
   const V way = hn::Div(hn::Neg(gap), slope);
   place = select(inside, mulAdd(way, along, place), place);
-  const auto again = hn::And(inside, hn::Gt(pushed, zero));
-  const V outsideGap = hn::Min(clearance, hn::IfThenElse(inside, clearance, gap));
-  clearance = hn::IfThenElse(again, zero, outsideGap);
   pushed = hn::Add(pushed, hn::IfThenElseZero(inside, way));
   push = select(inside, normal, push);
 }

@@ -84,17 +84,20 @@ class FeltContact::ChunkContact {
                  lowerLimits, lanes_, bound.data() + g.first);
   }
 
-  // Visits every group that has pairs within their limits: each(group) sees them in the batch.
+  // Asks a solid for the pairs within their limits. Returns whether there are any.
+  bool ask(const Group& g, Pairs which, const FloatArray& bound) {
+    selectPairs(pairsOf(g, which), bound.data() + g.first, lanes_, batch_);
+    if (batch_.count == 0) return false;
+    field_.evaluate(g.solid, batch_.place.view(batch_.count), batch_.gap.data(),
+                    batch_.answer.view(batch_.count));
+    subtractFat(lanes_, batch_);
+    return true;
+  }
+  // Asks every solid; each(group) sees the answer in the batch.
   template <class Each>
   void visit(Pairs which, const FloatArray& bound, const Each& each) {
-    for (const Group& g : groups_) {
-      selectPairs(pairsOf(g, which), bound.data() + g.first, lanes_, batch_);
-      if (batch_.count == 0) continue;
-      field_.evaluate(g.solid, batch_.place.view(batch_.count), batch_.gap.data(),
-                      batch_.answer.view(batch_.count));
-      subtractFat(lanes_, batch_);
-      each(g);
-    }
+    for (const Group& g : groups_)
+      if (ask(g, which, bound)) each(g);
   }
   static FeltMemory of(const Group& g, Memory& memory, const FloatArray& floor) {
     const std::size_t p = g.first;
@@ -107,45 +110,47 @@ class FeltContact::ChunkContact {
     absorbPairs(static_cast<float>(g.solid.index()), move, batch_, lanes_);
   }
 
-  // Finds out which pairs of the batch yield, and by how much anchors do.
-  void yield(const Group& g, FloatArray& floor, FloatArray* anchorYield) {
-    for (std::size_t i = 0; i < batch_.count; ++i) {
-      const std::size_t pair = g.first + static_cast<std::size_t>(batch_.pair[i]);
-      const float depth = -batch_.gap[i];
-      const float most = sense_.yield_m[chunk_.firstPoint + point(i)];
-      if (!(depth > most)) continue;
-      floor[pair] = kFarAway;
-      if (!anchorYield) continue;
-      const float push = most - 0.5f * (depth - most);
-      (*anchorYield)[pair] = push > 0 ? depth - push : kFarAway;
-    }
-  }
-  void addYields(const Group& g, const FloatArray& yield) {
+  // Finds out which pairs of the batch yield.
+  void yield(const Group& g, FloatArray& floor) {
     for (std::size_t i = 0; i < batch_.count; ++i)
-      batch_.gap[i] += yield[g.first + static_cast<std::size_t>(batch_.pair[i])];
+      if (-batch_.gap[i] > yieldOf(i)) floor[pair(g, i)] = kFarAway;
+  }
+  // The same, and by how much anchors do, which makes their gaps wider.
+  void yieldGently(const Group& g, FloatArray& floor, FloatArray& anchorYield, FloatArray& bound) {
+    for (std::size_t i = 0; i < batch_.count; ++i) {
+      const float depth = -batch_.gap[i], most = yieldOf(i);
+      if (!(depth > most)) continue;
+      const float push = most - 0.5f * (depth - most);
+      const float yield = push > 0 ? depth - push : kFarAway;
+      floor[pair(g, i)] = kFarAway;
+      anchorYield[pair(g, i)] = yield;
+      bound[pair(g, i)] += yield;
+    }
+    widen(g, anchorYield);
+  }
+  void widen(const Group& g, const FloatArray& yield) {
+    for (std::size_t i = 0; i < batch_.count; ++i) batch_.gap[i] += yield[pair(g, i)];
   }
 
   // Moves points that are inside of any solid out of all that they feel, in turn. Returns the
-  // longest way. `prepare` may change the gaps of a batch.
+  // longest way. First only solids within a point's yield are asked, which few points leave; then,
+  // for those, all. `busy` is scratch; `prepare` may change the gaps of a batch.
   template <class Prepare>
-  float leaveSolids(Pairs which, const FloatArray& bound, const Prepare& prepare) {
+  float leaveSolids(Pairs which, const FloatArray& bound, std::span<char> busy,
+                    const Prepare& prepare) {
     float longest = 0;
-    std::size_t moving = beginLeaving();
-    for (int pass = 0; pass < kPasses && moving > 0; ++pass) {
-      for (std::size_t p = 0; p < chunk_.points; ++p)
-        if (lanes_.limit[p] == kFelt)
-          lanes_.nearest[p] = lanes_.clearance[p] = kFarAway, lanes_.pushed[p] = 0;
-      visit(which, bound, [&](const Group& g) {
-        prepare(g);
-        absorb(g, true);
-      });
-      moving = 0;
-      for (std::size_t p = 0; p < chunk_.points; ++p) {
-        if (lanes_.limit[p] != kFelt) continue;
-        longest = std::max(longest, lanes_.pushed[p]);
-        const bool again = lanes_.pushed[p] > kRetest_m && lanes_.clearance[p] < lanes_.pushed[p];
-        lanes_.limit[p] = again ? kFelt : kNothing;
-        moving += again ? 1 : 0;
+    for (const bool all : {false, true}) {
+      std::size_t moving = beginMoving(all);
+      std::fill(busy.begin(), busy.end(), char{1});
+      for (int pass = 0; pass < kPasses && moving > 0; ++pass) {
+        beginPass();
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+          busy[g] = busy[g] && ask(groups_[g], which, bound);
+          if (!busy[g]) continue;
+          prepare(groups_[g]);
+          absorb(groups_[g], true);
+        }
+        moving = endPass(longest);
       }
     }
     return longest;
@@ -163,8 +168,7 @@ class FeltContact::ChunkContact {
 
   // Of the nearest solid's matter at points within reach of it.
   void readFleshVelocities(float reach_m) {
-    for (std::size_t p = 0; p < chunk_.points; ++p)
-      lanes_.limit[p] = inside_[p] ? kFelt : reach_m;
+    for (std::size_t p = 0; p < chunk_.points; ++p) lanes_.limit[p] = inside_[p] ? kFelt : reach_m;
     for (const Group& g : groups_) {
       selectNearest(pairsOf(g, Pairs::all), static_cast<float>(g.solid.index()), lanes_, batch_);
       if (batch_.count == 0) continue;
@@ -187,14 +191,42 @@ class FeltContact::ChunkContact {
  private:
   std::size_t point(std::size_t i) const { return static_cast<std::size_t>(batch_.point[i]); }
 
-  // Marks the points inside of a solid, and counts them.
-  std::size_t beginLeaving() {
+  std::size_t pair(const Group& g, std::size_t i) const {
+    return g.first + static_cast<std::size_t>(batch_.pair[i]);
+  }
+  float yieldOf(std::size_t i) const { return sense_.yield_m[chunk_.firstPoint + point(i)]; }
+
+  // Sets the points that are inside of a solid moving (all = false), then those that have left the
+  // reach of what was asked. Returns how many.
+  std::size_t beginMoving(bool all) {
     std::size_t count = 0;
     for (std::size_t p = 0; p < chunk_.points; ++p) {
-      inside_[p] = lanes_.nearest[p] <= 0;
-      lanes_.limit[p] = inside_[p] ? kFelt : kNothing;
-      lanes_.pushNormal.x[p] = lanes_.pushNormal.y[p] = lanes_.pushNormal.z[p] = 0;
-      count += inside_[p] ? 1 : 0;
+      const float reach = sense_.yield_m[chunk_.firstPoint + p];
+      if (!all) {
+        inside_[p] = lanes_.nearest[p] <= 0;
+        lanes_.pushNormal.x[p] = lanes_.pushNormal.y[p] = lanes_.pushNormal.z[p] = 0;
+        lanes_.way[p] = 0;
+      }
+      moving_[p] = inside_[p] && (!all || lanes_.way[p] > reach);
+      lanes_.limit[p] = !moving_[p] ? kNothing : all ? kFelt : reach;
+      count += moving_[p] ? 1 : 0;
+    }
+    return count;
+  }
+  void beginPass() {
+    for (std::size_t p = 0; p < chunk_.points; ++p)
+      if (moving_[p]) lanes_.nearest[p] = kFarAway, lanes_.pushed[p] = 0;
+  }
+  // Points that have hardly been pushed are done. Returns how many are not.
+  std::size_t endPass(float& longest) {
+    std::size_t count = 0;
+    for (std::size_t p = 0; p < chunk_.points; ++p) {
+      if (!moving_[p]) continue;
+      lanes_.way[p] += lanes_.pushed[p];
+      longest = std::max(longest, lanes_.way[p]);
+      moving_[p] = lanes_.pushed[p] > kRetest_m;
+      if (!moving_[p]) lanes_.limit[p] = kNothing;
+      count += moving_[p] ? 1 : 0;
     }
     return count;
   }
@@ -205,7 +237,7 @@ class FeltContact::ChunkContact {
   std::span<const Group> groups_;
   FeltLanes lanes_;
   FeltBatch batch_;
-  std::array<bool, FleshSense::kChunk> inside_;
+  std::array<bool, FleshSense::kChunk> inside_, moving_;
 };
 
 FeltContact::FeltContact(const FleshSense& sense)
@@ -216,6 +248,7 @@ FeltContact::FeltContact(const FleshSense& sense)
       noFloor_(floor_),
       bound_(floor_),
       anchorYield_(sense.pairCount(), 0.f),
+      busy_(sense.groups.size()),
       results_(sense.chunks.size()) {}
 
 void FeltContact::findYielding(const Field& field, const PointModel& points,
@@ -226,8 +259,7 @@ void FeltContact::findYielding(const Field& field, const PointModel& points,
     ChunkContact chunk(*sense_, sense_->chunks[c], field);
     using Pairs = ChunkContact::Pairs;
     chunk.load(carried, points, 0);
-    chunk.visit(Pairs::yielding, noFloor_,
-                [&](const Group& g) { chunk.yield(g, floor_, nullptr); });
+    chunk.visit(Pairs::yielding, noFloor_, [&](const Group& g) { chunk.yield(g, floor_); });
   });
 }
 
@@ -237,19 +269,19 @@ void FeltContact::projectAnchors(const Field& field, const PointModel& points,
   floor_ = noFloor_;
   std::fill(anchorYield_.begin(), anchorYield_.end(), 0.f);
   parallelFor(sense_->chunks.size(), [&](std::size_t c) {
-    ChunkContact chunk(*sense_, sense_->chunks[c], field);
+    const Chunk& run = sense_->chunks[c];
+    ChunkContact chunk(*sense_, run, field);
     using Pairs = ChunkContact::Pairs;
     chunk.load(anchor, points, 0);
     chunk.bound(Pairs::yielding, anchors_, noFloor_, false, bound_);
     chunk.visit(Pairs::yielding, bound_, [&](const Group& g) {
       rememberPairs(anchors_.solids[g.solid.index()].frame, chunk.batch(),
                     ChunkContact::of(g, anchors_, noFloor_));
-      chunk.yield(g, floor_, &anchorYield_);
-      chunk.addYields(g, anchorYield_);
+      chunk.yieldGently(g, floor_, anchorYield_, bound_);
       chunk.absorb(g, false);
     });
-    chunk.leaveSolids(Pairs::yielding, anchorYield_,
-                      [&](const Group& g) { chunk.addYields(g, anchorYield_); });
+    chunk.leaveSolids(Pairs::yielding, bound_, busy(run),
+                      [&](const Group& g) { chunk.widen(g, anchorYield_); });
     chunk.store(anchor);
   });
 }
@@ -269,7 +301,8 @@ FeltContact::Result FeltContact::project(const Field& field, const PointModel& p
                     ChunkContact::of(g, points_, floor_));
       chunk.absorb(g, false);
     });
-    results_[c].maxCorrection_m = chunk.leaveSolids(Pairs::all, bound_, [](const Group&) {});
+    results_[c].maxCorrection_m =
+        chunk.leaveSolids(Pairs::all, bound_, busy(run), [](const Group&) {});
     chunk.readFleshVelocities(reach_m);
     const PointBlock block{run.firstPoint, static_cast<std::uint32_t>(run.points)};
     results_[c].maxSpeed_m_per_s = finishContact(block, true, reach_m, restitution, points,

@@ -44,6 +44,9 @@ class FeltContact final : public SkinContact {
     void follow(const Field& field);
   };
   class ChunkContact;
+  std::span<char> busy(const Chunk& chunk) {
+    return std::span(busy_).subspan(chunk.firstGroup, chunk.groups);
+  }
 
   const FleshSense* sense_;
   Memory points_, anchors_;
@@ -51,6 +54,7 @@ class FeltContact final : public SkinContact {
   FloatArray noFloor_;           // where none does
   FloatArray bound_;             // per pair: least gap now
   FloatArray anchorYield_;       // per pair: see projectAnchors
+  std::vector<char> busy_;       // per group: whether it has points that are being moved
   std::vector<Result> results_;  // per chunk
 };
 

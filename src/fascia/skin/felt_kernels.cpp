@@ -75,8 +75,7 @@ void boundImpl(const FeltSolid& solid, std::span<const std::int32_t> point,
   const D d;
   const V far = hn::Set(d, kFarAway), swelling = hn::Set(d, solid.swelling_m);
   const float* t = solid.frame.translation_m;
-  const V rounding = hn::Set(
-      d, kRounding * (1 + std::abs(t[0]) + std::abs(t[1]) + std::abs(t[2])));
+  const V rounding = hn::Set(d, kRounding * (1 + std::abs(t[0]) + std::abs(t[1]) + std::abs(t[2])));
   for (std::size_t i = 0; i < point.size(); i += hn::Lanes(d)) {
     const Index k = loadIndex(point.data() + i);
     const V3 way = toLocal(solid.frame, gather(lanes.place, k)) - pointers(memory.place).at(i);
@@ -179,12 +178,11 @@ void absorbImpl(float solid, bool move, const FeltBatch& batch, FeltLanes& lanes
     const V3 normal = pointers(batch.answer).at(i);
     if (move) {
       V3 place = gather(lanes.place, k), push = gather(lanes.pushNormal, k);
-      V pushed = gather(lanes.pushed, k), clearance = gather(lanes.clearance, k);
-      pushOut(gap, normal, place, push, pushed, clearance);
+      V pushed = gather(lanes.pushed, k);
+      pushOut(gap, normal, place, push, pushed);
       scatter(place, k, lanes.place);
       scatter(push, k, lanes.pushNormal);
       scatter(pushed, k, lanes.pushed);
-      scatter(clearance, k, lanes.clearance);
     }
     V nearest = gather(lanes.nearest, k), nearestSolid = gather(lanes.nearestSolid, k);
     V3 nearestNormal = gather(lanes.nearestNormal, k);

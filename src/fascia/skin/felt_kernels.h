@@ -33,7 +33,7 @@ struct alignas(kSimdAlignment) FeltLanes {
   FeltFloats nearest;         // gap between fat and nearest solid so far, ≥ 0
   FeltFloats nearestSolid;    // which one (a float, to blend like the rest)
   FeltFloats pushed;          // way out of solids in this pass
-  FeltFloats clearance;       // gap to the other solids; 0 if it was inside of two
+  FeltFloats way;             // the same in all passes
   FeltFloats limit;           // pairs with a larger bound are not worth asking
 };
 

@@ -188,10 +188,9 @@ double OdeSkin::project(double t_s, std::span<double> r, std::span<double> v) {
   velocityBefore_ = velocity_;
   const Field& field = *poses_->at(t_s).field;
   contact_->findYielding(field, skin_.points(), state_->surroundings.carried);
-  const SkinContact::Result result =
-      contact_->project(field, skin_.points(), 0.f,
-                        static_cast<float>(skin_.contactResponse().restitution), position_,
-                        velocity_, state_->surroundings);
+  const SkinContact::Result result = contact_->project(
+      field, skin_.points(), 0.f, static_cast<float>(skin_.contactResponse().restitution),
+      position_, velocity_, state_->surroundings);
   // Only what was changed goes back: the rest keeps its double precision.
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
     const std::size_t k = points_[p].storage;

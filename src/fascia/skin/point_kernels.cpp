@@ -96,12 +96,15 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
     if (move) {
       V3 place = pointers(lanes.place).at(l), push = pointers(lanes.pushNormal).at(l);
       V pushed = hn::LoadU(d, lanes.pushed.data() + l);
-      V clearance = hn::LoadU(d, lanes.clearance.data() + l);
-      pushOut(gap, normal, place, push, pushed, clearance);
+      const V clearance = hn::LoadU(d, lanes.clearance.data() + l);
+      const auto inside = hn::Lt(gap, hn::Zero(d));
+      const auto again = hn::And(inside, hn::Gt(pushed, hn::Zero(d)));
+      const V outsideGap = hn::Min(clearance, hn::IfThenElse(inside, clearance, gap));
+      hn::StoreU(hn::IfThenElse(again, hn::Zero(d), outsideGap), d, lanes.clearance.data() + l);
+      pushOut(gap, normal, place, push, pushed);
       pointers(lanes.place).set(l, place);
       pointers(lanes.pushNormal).set(l, push);
       hn::StoreU(pushed, d, lanes.pushed.data() + l);
-      hn::StoreU(clearance, d, lanes.clearance.data() + l);
     }
     V nearest = hn::LoadU(d, lanes.nearest.data() + l);
     V3 nearestNormal = pointers(lanes.nearestNormal).at(l);
@@ -236,8 +239,8 @@ float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lan
 }
 
 float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,
-                    const PointModel& points, const ContactFindings& found,
-                    VectorArray& position, VectorArray& velocity, PointSurroundings& around) {
+                    const PointModel& points, const ContactFindings& found, VectorArray& position,
+                    VectorArray& velocity, PointSurroundings& around) {
   return HWY_DYNAMIC_DISPATCH(finishImpl)(block, any, reach_m, restitution, points, found, position,
                                           velocity, around);
 }

@@ -74,8 +74,8 @@ struct ContactFindings {
 // spaces. `any` = false: nothing is within reach. Returns the largest squared speed
 // relative to the anchors.
 float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,
-                    const PointModel& points, const ContactFindings& found,
-                    VectorArray& position, VectorArray& velocity, PointSurroundings& around);
+                    const PointModel& points, const ContactFindings& found, VectorArray& position,
+                    VectorArray& velocity, PointSurroundings& around);
 
 // Anchor velocities of the coming interval; velocities of points with added mass follow their
 // anchor's change (see leapfrog.h). `carried` may be null. Returns the largest squared way of an

@@ -55,9 +55,7 @@ bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anc
 }  // namespace
 
 SkinStepper::SkinStepper(const Skin& skin)
-    : skin_(&skin),
-      surface_(skin.topology().makeStepper()),
-      contact_(makeContact(skin)) {
+    : skin_(&skin), surface_(skin.topology().makeStepper()), contact_(makeContact(skin)) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
   if (skin.fatPressure())
@@ -246,8 +244,8 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
                skin_->points().slideLimit.empty() ? size : kSlidingReach * size);
   state.maxSpeed_m_per_s = contact_
                                ->project(*pose.field, skin_->points(), reach,
-                                        static_cast<float>(skin_->contactResponse().restitution),
-                                        state.position, state.velocity, state.surroundings)
+                                         static_cast<float>(skin_->contactResponse().restitution),
+                                         state.position, state.velocity, state.surroundings)
                                .maxSpeed_m_per_s;
   if (skin_->selfContact())
     selfContact_.resolve(skin_->points(), 0.002f * static_cast<float>(skin_->size_m()),
