@@ -3,6 +3,7 @@
 #include <string>
 
 #include <fascia/io/character_file.h>
+#include <fascia/skin/flesh_contact.h>
 #include <fascia/skin/wrap.h>
 
 namespace fascia {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <ctime>
 
+#include <fascia/skin/flesh_contact.h>
+
 #include "solvers/scalar_point.h"
 
 namespace fascia {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <fascia/skin/flesh_contact.h>
+#include <fascia/skin/felt_contact.h>
 
 #include "test_fields.h"
 
@@ -10,55 +10,53 @@ namespace {
 using test::RigidSolids;
 
 constexpr double kRadius_m = 0.3, kYield_m = 0.02;
-constexpr std::size_t kPoints = 2 * PointBlock::kCapacity;
-using Role = FleshContact::Role;
+// More than one chunk, whose last is neither full nor whole vectors.
+constexpr std::size_t kPoints = FleshSense::kChunk + 77;
 
-// Two blocks of points on the x axis, and a ball of flesh around the origin beside one far away.
-// Point i lies so deep in the first ball, and so do its joints carry it.
+// Points on the x axis, and a ball of flesh around the origin beside one far away. Point i lies so
+// deep in the first ball, and so do its joints carry it.
 struct Line {
   RigidSolids field;
   PointModel points;
   VectorArray position, velocity;
   PointSurroundings around;
-  std::vector<PointBlock> blocks;
   FleshSense sense;
 
   Line() {
     field.addSphere(Vec3::Zero(), kRadius_m).addSphere(Vec3(5, 0, 0), kRadius_m);
-    const std::size_t storage = kPoints + PointBlock::kCapacity;  // padding for whole vectors
+    const std::size_t storage = kPoints + FleshSense::kPad;  // padding for whole vectors
     position.resize(storage), velocity.resize(storage), around.resize(storage);
     points.fat.assign(storage, 0.f);
     points.free.assign(storage, 1.f);
     for (std::size_t i = 0; i < storage; ++i)
       position.x[i] = static_cast<float>(kRadius_m - depth(i));
     around.carried = position;
-    for (std::size_t first = 0; first < kPoints; first += PointBlock::kCapacity)
-      blocks.push_back({first, PointBlock::kCapacity});
-    sense.felt.assign(blocks.size() * 2, ~std::uint32_t{0});
-    sense.yielding.assign(sense.felt.size(), 0);
-    sense.yield_m.assign(kPoints, static_cast<float>(kYield_m));
+    letYield(false);
   }
-  static double depth(std::size_t i) { return 0.0015 * static_cast<double>(i) + 0.0007; }
+  static double depth(std::size_t i) { return 0.0015 * static_cast<double>(i % 64) + 0.0007; }
   double pushed(std::size_t i) const { return double{position.x[i]} - (kRadius_m - depth(i)); }
-  void project(FleshContact& contact) {
+  void project(FeltContact& contact) {
     contact.project(field, points, 0.02f, 0.f, position, velocity, around);
   }
-  // Bits of the points that `feels` says, for the first ball.
+  // Points that `feels` says feel the first ball; all feel the second.
   template <class Feels>
-  void setFelt(const Feels& feels) {
-    for (std::size_t i = 0; i < kPoints; ++i) {
-      std::uint32_t& mask = sense.felt[i / PointBlock::kCapacity * 2];
-      const std::uint32_t bit = std::uint32_t{1} << (i % PointBlock::kCapacity);
-      mask = feels(i) ? mask | bit : mask & ~bit;
+  void setFelt(const Feels& feels, bool yields = false) {
+    std::vector<FleshSense::Feeling> feelings;
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+      if (feels(i)) feelings.push_back({i, SolidId(0), yields});
+      feelings.push_back({i, SolidId(1), false});
     }
+    sense = FleshSense(feelings, 2, FloatArray(kPoints, static_cast<float>(kYield_m)));
   }
-  void letYield() { sense.yielding = sense.felt; }
+  void letYield(bool yields = true) {
+    setFelt([](std::size_t) { return true; }, yields);
+  }
 };
 
 TEST(FleshSense, PushesOnlyPointsThatFeelTheSolid) {
   Line line;
   line.setFelt([](std::size_t i) { return i % 3 != 1; });
-  FleshContact contact(line.blocks, &line.sense);
+  FeltContact contact(line.sense);
   line.project(contact);
   for (std::size_t i = 0; i < kPoints; ++i) {
     if (i % 3 != 1)
@@ -68,13 +66,15 @@ TEST(FleshSense, PushesOnlyPointsThatFeelTheSolid) {
   }
 }
 
-TEST(FleshSense, LeavesBlocksAloneThatFeelNothing) {
+TEST(FleshSense, LeavesPointsAloneThatFeelNothingNear) {
   Line line;
-  line.setFelt([](std::size_t i) { return i < PointBlock::kCapacity; });
-  FleshContact contact(line.blocks, &line.sense);
+  constexpr std::size_t kFeeling = 40;
+  line.setFelt([](std::size_t i) { return i < kFeeling; });
+  FeltContact contact(line.sense);
   line.project(contact);
   EXPECT_NEAR(line.pushed(20), Line::depth(20), 1e-5);
-  for (std::size_t i = PointBlock::kCapacity; i < kPoints; ++i) {
+  EXPECT_NEAR(line.around.normal.x[20], 1, 1e-6);
+  for (std::size_t i = kFeeling; i < kPoints; ++i) {
     EXPECT_NEAR(line.pushed(i), 0, 1e-7) << i;
     EXPECT_EQ(line.around.normal.x[i], 0) << i;  // no half space either
   }
@@ -84,15 +84,16 @@ TEST(FleshSense, MeasuresDepthOnlyWhereSolidsAreFelt) {
   Line line;
   constexpr std::size_t kDeepestFelt = 40;
   line.setFelt([](std::size_t i) { return i <= kDeepestFelt; });
-  const FleshContact contact(line.blocks, &line.sense);
-  EXPECT_NEAR(contact.deepest(line.field, line.points, line.position, line.around.carried),
-              Line::depth(kDeepestFelt), 1e-6);
+  const FeltContact contact(line.sense);
+  EXPECT_NEAR(contact.deepest(line.field, line.points, line.position), Line::depth(kDeepestFelt),
+              1e-6);
 }
 
 TEST(FleshSense, YieldsWhereThePoseItselfDrivesFleshOverAPoint) {
   Line line;
   line.letYield();
-  FleshContact contact(line.blocks, &line.sense);
+  FeltContact contact(line.sense);
+  contact.findYielding(line.field, line.points, line.around.carried);
   line.project(contact);
   for (std::size_t i = 0; i < kPoints; ++i) {
     const bool felt = Line::depth(i) <= kYield_m;
@@ -104,7 +105,8 @@ TEST(FleshSense, KeepsPushingWhatItsJointsCarryOutside) {
   Line line;
   line.letYield();
   for (float& x : line.around.carried.x) x = static_cast<float>(kRadius_m) + 0.01f;
-  FleshContact contact(line.blocks, &line.sense);
+  FeltContact contact(line.sense);
+  contact.findYielding(line.field, line.points, line.around.carried);
   line.project(contact);
   for (std::size_t i = 0; i < kPoints; ++i) EXPECT_NEAR(line.pushed(i), Line::depth(i), 1e-5) << i;
 }
@@ -112,8 +114,8 @@ TEST(FleshSense, KeepsPushingWhatItsJointsCarryOutside) {
 TEST(FleshSense, LetsAnchorsYieldGentlyUpToThreeTimesTheYield) {
   Line line;
   line.letYield();
-  FleshContact contact(line.blocks, &line.sense, Role::anchors);
-  line.project(contact);
+  FeltContact contact(line.sense);
+  contact.projectAnchors(line.field, line.points, line.position);
   std::size_t between = 0;
   for (std::size_t i = 0; i < kPoints; ++i) {
     const double depth = Line::depth(i);
@@ -127,19 +129,18 @@ TEST(FleshSense, LetsAnchorsYieldGentlyUpToThreeTimesTheYield) {
 TEST(FleshSense, LearnsFromTheAnchorsWhichPointsYield) {
   Line alone;
   alone.letYield();
-  FleshContact contact(alone.blocks, &alone.sense);
+  FeltContact contact(alone.sense);
+  contact.findYielding(alone.field, alone.points, alone.around.carried);
   alone.project(contact);
 
   Line line;
   line.letYield();
-  FleshContact anchors(line.blocks, &line.sense, Role::anchors), points(line.blocks, &line.sense);
-  points.follow(anchors);
-  VectorArray anchor = line.position, still = line.velocity;
-  PointSurroundings ignored = line.around;
-  anchors.project(line.field, line.points, 0.02f, 0.f, anchor, still, ignored);
-  line.project(points);
+  FeltContact both(line.sense);
+  VectorArray anchor = line.position;
+  both.projectAnchors(line.field, line.points, anchor);
+  line.project(both);
   for (std::size_t i = 0; i < kPoints; ++i)
-    EXPECT_NEAR(line.pushed(i), alone.pushed(i), 1e-6) << Line::depth(i);
+    EXPECT_EQ(line.position.x[i], alone.position.x[i]) << Line::depth(i);
 }
 
 }  // namespace

@@ -45,6 +45,8 @@ class RigidSolids final : public Field {
   void evaluate(SolidId id, ConstVectors points, float* distance_m, Vectors normal) const override {
     evaluatePosed(parts[id.index()].solid, parts[id.index()].world, points, distance_m, normal);
   }
+  Transform frame(SolidId id) const override { return parts[id.index()].world; }
+  const Outline& outline(SolidId id) const override { return parts[id.index()].solid.outline_m(); }
   void velocity(SolidId id, ConstVectors points, Vectors out) const override {
     for (std::size_t i = 0; i < points.count; ++i) {
       const Vec3 v = parts[id.index()].twist.at({points.x[i], points.y[i], points.z[i]});

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <fascia/base/aligned.h>
 #include <fascia/base/ids.h>
 #include <fascia/math/types.h>
@@ -17,6 +19,13 @@ class Field {
   // Reads and writes points.count entries of each array; no alignment required.
   virtual void evaluate(SolidId solid, ConstVectors points, float* distance_m,
                         Vectors normal) const = 0;
+  // The frame that the solid's shape is given in: while only the frame changes, it moves rigidly.
+  virtual Transform frame(SolidId solid) const = 0;
+  // Eight points around the solid in its frame, fixed to its shape: no point of its surface moves
+  // much farther than the farthest of them when the shape changes.
+  static constexpr std::size_t kOutline = 8;
+  using Outline = std::array<Vec3, kOutline>;
+  virtual const Outline& outline(SolidId solid) const = 0;
   // Velocity of the solid's own matter at each point (rigid motion and swelling), m/s.
   virtual void velocity(SolidId solid, ConstVectors points, Vectors velocity) const = 0;
   // Material coordinates move with the solid and swell with it: anchors live there.

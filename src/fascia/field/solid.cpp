@@ -24,6 +24,8 @@ void reportUnknown(const std::string& pointer, const std::string& found,
                     nearest.hint());
 }
 
+}  // namespace
+
 KernelFrame kernelFrame(const Transform& world) {
   KernelFrame frame;
   for (int i = 0; i < 3; ++i) {
@@ -32,8 +34,6 @@ KernelFrame kernelFrame(const Transform& world) {
   }
   return frame;
 }
-
-}  // namespace
 
 void Shape::evaluate(std::span<const double> p, ConstVectors points, float* distance_m,
                      Vectors normal) const {
@@ -117,18 +117,29 @@ int Solid::parameterIndex(std::string_view path) const {
   return found == paths.end() ? -1 : static_cast<int>(found - paths.begin());
 }
 
-void Solid::setParameter(int index, double value) {
-  double& current = values_[static_cast<std::size_t>(index)];
-  if (std::isnan(value)) return;
-  const ParameterInfo& info = parameterInfo(index);
+bool Solid::write(std::size_t index, double value) {
+  double& current = values_[index];
+  if (std::isnan(value)) return false;
+  const ParameterInfo& info = *layout_->infos[index];
   value = std::clamp(value, info.min, info.max);
-  if (value == current) return;
+  if (value == current) return false;
   current = value;
-  refresh();
+  return true;
+}
+
+void Solid::setParameter(int index, double value) {
+  if (write(static_cast<std::size_t>(index), value)) refresh();
+}
+
+void Solid::setParameters(std::span<const double> values) {
+  bool changed = false;
+  for (std::size_t i = 0; i < values.size(); ++i) changed = write(i, values[i]) || changed;
+  if (changed) refresh();
 }
 
 void Solid::refresh() {
   const Shape& primitive = *layout_->shape;
+  const PrimitiveKernel before = kernel_.primitive;
   halfExtents_m_ = primitive.halfExtents_m(shapeParameters());
   kernel_.primitive = primitive.kernel(shapeParameters());
   kernel_.deformationCount = 0;
@@ -144,6 +155,20 @@ void Solid::refresh() {
       kernel_.deformations[kernel_.deformationCount++] = step.type->kernel(parameters, zHalf_m);
     }
   }
+  refreshOutline(before);
+}
+
+// The corners (±a, ±b, ±c), farther out by as much of them as is inside of the surface: the one
+// part of their place that exponents change.
+void Solid::refreshOutline(const PrimitiveKernel& before) {
+  const PrimitiveKernel& now = kernel_.primitive;
+  if (cornerGauge_ == 0 || now.kind == PrimitiveKernel::Kind::capsule ||
+      now.northSouthPower != before.northSouthPower || now.eastWestPower != before.eastWestPower)
+    cornerGauge_ = shape().gauge(shapeParameters(), halfExtents_m_);
+  const Vec3 corner = (1 + 1 / cornerGauge_) * halfExtents_m_;
+  for (std::size_t c = 0; c < outline_m_.size(); ++c)
+    outline_m_[c] = deformedFromShape(
+        corner.cwiseProduct(Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1)));
 }
 
 double Solid::volume_m3() const {

@@ -49,12 +49,16 @@ class Solid {
     return layout_->paths[static_cast<std::size_t>(index)];
   }
   double parameter(int index) const { return values_[static_cast<std::size_t>(index)]; }
-  void setParameter(int index, double value);  // clamped to its range; NaN is ignored
+  void setParameter(int index, double value);          // clamped to its range; NaN is ignored
+  void setParameters(std::span<const double> values);  // all of them, in one go
 
   const Shape& shape() const { return *layout_->shape; }
   bool deformed() const { return !layout_->steps.empty(); }
   const Box& bounds() const { return bounds_; }          // local, encloses the deformed surface
   Vec3 halfExtents_m() const { return halfExtents_m_; }  // of the undeformed shape
+  // Corners around the shape that follow every change of its parameters: half sizes and
+  // deformations as their own matter would, exponents by as much as the surface towards a corner.
+  const std::array<Vec3, 8>& outline_m() const { return outline_m_; }
   double volume_m3() const;  // closed form; with deformations: of the tessellation
   TriangleMesh tessellate(int detail) const;
 
@@ -104,7 +108,9 @@ class Solid {
   std::span<const double> stepParameters(const Step& s) const {
     return {effective_.data() + s.first, s.count};
   }
-  void refresh();  // all that depends on values_
+  bool write(std::size_t index, double value);  // whether that changed anything
+  void refresh();                               // all that depends on values_
+  void refreshOutline(const PrimitiveKernel& before);
 
   std::shared_ptr<const Layout> layout_ = std::make_shared<Layout>();
   std::vector<double> values_;
@@ -112,7 +118,11 @@ class Solid {
   SolidKernel kernel_;
   Vec3 halfExtents_m_ = Vec3::Ones();
   Box bounds_{-Vec3::Ones(), Vec3::Ones()};
+  double cornerGauge_ = 0;  // at (a, b, c); 0: not known yet
+  std::array<Vec3, 8> outline_m_{};
 };
+
+KernelFrame kernelFrame(const Transform& world);
 
 // Distance and normal of a solid that stands in the world: transform, evaluate and turn the normals
 // in one pass over the points. Arrays need no alignment; outputs must not overlap the inputs.

@@ -57,13 +57,16 @@ class PosedFlesh final : public Field {
   Box bounds(SolidId solid) const override { return posed_[solid.index()].bounds; }
   void evaluate(SolidId solid, ConstVectors points, float* distance_m,
                 Vectors normal) const override;
+  Transform frame(SolidId solid) const override { return posed_[solid.index()].world; }
+  const Outline& outline(SolidId solid) const override {
+    return posed_[solid.index()].solid.outline_m();
+  }
   void velocity(SolidId solid, ConstVectors points, Vectors velocity) const override;
   Vec3 materialFromWorld(SolidId solid, const Vec3& world) const override;
   Vec3 worldFromMaterial(SolidId solid, const Vec3& material) const override;
   void worldFromMaterials(SolidId solid, ConstVectors materials, Vectors world) const override;
 
   const Solid& solid(SolidId id) const { return posed_[id.index()].solid; }
-  const Transform& frame(SolidId id) const { return posed_[id.index()].world; }
 
  private:
   friend class Flesh;
@@ -74,6 +77,7 @@ class PosedFlesh final : public Field {
     const Solid* rest = nullptr;        // kept alive by source_
     Solid solid;                        // with the current parameters
     std::vector<Parameter> parameters;  // as drivers and tracks want them
+    std::vector<double> values;         // scratch
     bool written = false;               // parameters are no longer those of rest
     Transform world;
     Twist twist;
@@ -95,6 +99,7 @@ class PosedFlesh final : public Field {
   static bool apply(Posed& posed);
   static double differentiate(Posed& posed);
   static void addSwelling(Posed& posed);
+  static Vec3 movement(const Posed& posed, const Vec3& local);
   static void finish(Posed& posed);
 
   std::vector<Posed> posed_;

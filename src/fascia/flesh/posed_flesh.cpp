@@ -35,13 +35,16 @@ void set(Vectors v, std::size_t i, const Vec3& value) {
   v.z[i] = static_cast<float>(value.z());
 }
 
-// Whether two states of one solid differ by a stretching along its axes. True for every
-// superquadric, whose points are products of half sizes and a function of direction and exponents
-// (Barr 1981); a capsule keeps its ends round instead.
-bool differByStretch(const Solid& a, const Solid& b) {
+// Whether the undeformed shapes of two states of one solid differ by a stretching along its axes.
+// True for every superquadric, whose points are products of half sizes and a function of direction
+// and exponents (Barr 1981); a capsule keeps its ends round instead.
+bool shapesDifferByStretch(const Solid& a, const Solid& b) {
   const PrimitiveKernel &p = a.kernel().primitive, &q = b.kernel().primitive;
-  return !a.deformed() && p.kind != PrimitiveKernel::Kind::capsule &&
-         p.northSouthPower == q.northSouthPower && p.eastWestPower == q.eastWestPower;
+  return p.kind != PrimitiveKernel::Kind::capsule && p.northSouthPower == q.northSouthPower &&
+         p.eastWestPower == q.eastWestPower;
+}
+bool differByStretch(const Solid& a, const Solid& b) {
+  return !a.deformed() && shapesDifferByStretch(a, b);
 }
 
 }  // namespace
@@ -71,9 +74,10 @@ bool PosedFlesh::apply(Posed& posed) {
     value = std::isnan(value) ? posed.rest->parameter(static_cast<int>(i))
                               : std::clamp(value, info.min, info.max);
     rate = held ? 0 : rate;
-    posed.solid.setParameter(static_cast<int>(i), value);
+    posed.values[i] = value;
     changing = changing || rate != 0;
   }
+  posed.solid.setParameters(posed.values);
   return changing;
 }
 
@@ -93,11 +97,13 @@ double PosedFlesh::differentiate(Posed& posed) {
   const bool roomBoth = std::min(roomAhead_s, roomBehind_s) >= step_s;
   const double ahead_s = roomBoth || roomAhead_s >= roomBehind_s ? step_s : 0;
   const double behind_s = roomBoth || roomAhead_s < roomBehind_s ? step_s : 0;
-  for (std::size_t i = 0; i < posed.parameters.size(); ++i) {
-    const auto [p, rate] = posed.parameters[i];
-    posed.ahead.setParameter(static_cast<int>(i), p + ahead_s * rate);
-    posed.behind.setParameter(static_cast<int>(i), p - behind_s * rate);
-  }
+  const auto setAt = [&](Solid& solid, double time_s) {
+    for (std::size_t i = 0; i < posed.parameters.size(); ++i)
+      posed.values[i] = posed.parameters[i].value + time_s * posed.parameters[i].rate;
+    solid.setParameters(posed.values);
+  };
+  setAt(posed.ahead, ahead_s);
+  setAt(posed.behind, -behind_s);
   return ahead_s + behind_s;
 }
 
@@ -141,11 +147,21 @@ void PosedFlesh::velocity(SolidId solid, ConstVectors points, Vectors velocity) 
   if (posed.behindToAhead_s == 0) return;
   const Transform localFromWorld = posed.world.inverse();
   for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 matter = posed.solid.materialFromLocal(localFromWorld.point(at(points, i)));
-    const Vec3 moved_m =
-        posed.ahead.localFromMaterial(matter) - posed.behind.localFromMaterial(matter);
+    const Vec3 moved_m = movement(posed, localFromWorld.point(at(points, i)));
     set(velocity, i, at(velocity, i) + posed.world.vector(moved_m / posed.behindToAhead_s));
   }
+}
+
+// How far the matter at a place goes from behind to ahead.
+Vec3 PosedFlesh::movement(const Posed& posed, const Vec3& local) {
+  if (!shapesDifferByStretch(posed.behind, posed.ahead)) {
+    const Vec3 matter = posed.solid.materialFromLocal(local);
+    return posed.ahead.localFromMaterial(matter) - posed.behind.localFromMaterial(matter);
+  }
+  // Material coordinates that only half sizes differ in: their gauges cancel.
+  const Vec3 x = posed.solid.shapeFromDeformed(local).cwiseQuotient(posed.solid.halfExtents_m());
+  return posed.ahead.deformedFromShape(x.cwiseProduct(posed.ahead.halfExtents_m())) -
+         posed.behind.deformedFromShape(x.cwiseProduct(posed.behind.halfExtents_m()));
 }
 
 Vec3 PosedFlesh::materialFromWorld(SolidId solid, const Vec3& world) const {
@@ -177,6 +193,7 @@ void Flesh::prepare(PosedFlesh& out) const {
     posed.rest = &bound_->rest[i];
     posed.solid = *posed.rest;
     posed.parameters.resize(posed.solid.parameterCount());
+    posed.values.resize(posed.solid.parameterCount());
     PosedFlesh::reset(posed);
   }
   out.source_ = bound_;

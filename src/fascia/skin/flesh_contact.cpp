@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include <fascia/base/parallel.h>
@@ -10,8 +9,6 @@
 namespace fascia {
 namespace {
 
-// Only a projection larger than this makes a block with several solids be tested again.
-constexpr float kRetest_m = 1e-5f;
 // Bound of how far a point goes when pushed out, over the sum of the depths: along a crease's flank
 // the way is longer than the depth.
 constexpr float kPushMargin = 8;
@@ -26,9 +23,6 @@ bool near(const BlockBox& a, const Box& b, float reach) {
   return true;
 }
 
-// Of what is not felt: far away.
-constexpr float kFarAway = 1e30f;
-
 // One block of points against the solids of a field.
 struct BlockTest {
   const Field& field;
@@ -36,18 +30,12 @@ struct BlockTest {
   ContactLanes& lanes;
   std::span<std::int32_t> nearby;  // scratch for as many as the field has solids
   std::span<float> gaps = {};      // per solid: no point is nearer than this; updated by visits
-  const std::uint32_t* felt = nullptr;        // per solid: which points feel it; null: all do
-  const std::uint32_t* yielding = nullptr;    // per solid: see FleshSense
-  std::span<float> yields = {};               // scratch: per solid and point; empty: none known
-  std::uint32_t* deep = nullptr;              // per solid: written with the yields
-  const std::uint32_t* overlooked = nullptr;  // per solid: points that do not feel it now
   std::size_t nearbyCount = 0;
 
   bool findSolids(const BlockBox& box, std::span<const Box> boxes, float reach) {
     nearbyCount = 0;
     for (std::size_t s = 0; s < boxes.size(); ++s)
-      if ((gaps.empty() || gaps[s] <= reach) && (!felt || felt[s] != 0) &&
-          near(box, boxes[s], reach))
+      if ((gaps.empty() || gaps[s] <= reach) && near(box, boxes[s], reach))
         nearby[nearbyCount++] = static_cast<std::int32_t>(s);
     return nearbyCount > 0;
   }
@@ -61,73 +49,30 @@ struct BlockTest {
     for (const std::int32_t s : nearby.first(nearbyCount)) {
       field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
                      lanes.normal.view(block.count));
-      const float yielded = felt ? soften(static_cast<std::size_t>(s)) : 0;
       const float gap = absorbSolid(static_cast<float>(s), move, block.count, lanes);
-      if (!gaps.empty()) gaps[static_cast<std::size_t>(s)] = gap - yielded;
+      if (!gaps.empty()) gaps[static_cast<std::size_t>(s)] = gap;
       deepest = std::max(deepest, -gap);
     }
     return deepest;
   }
 
-  // What a solid is to points that do not feel it, or yield to it: farther away. Returns the most
-  // by which it was moved away from a point that feels it.
-  float soften(std::size_t solid) {
-    const std::uint32_t feeling = felt[solid] & ~(overlooked ? overlooked[solid] : 0);
-    const std::uint32_t yielded = yields.empty() ? 0 : yielding[solid];
-    if (feeling == ~std::uint32_t{0} && yielded == 0) return 0;
-    const float* yield = yieldsOf(solid);
-    float most = 0;
-    for (std::size_t l = 0; l < block.count; ++l) {
-      if (!(feeling >> l & 1u)) {
-        lanes.distance[l] = kFarAway;
-      } else if (yielded >> l & 1u) {
-        lanes.distance[l] += yield[l];
-        most = std::max(most, yield[l]);
-      }
-    }
-    return overlooked && overlooked[solid] != 0 ? kFarAway : most;  // felt again at any time
-  }
-
-  // How far each point yields to the nearby solids, see FleshSense.
-  using Role = FleshContact::Role;
-  void findYields(const VectorArray& carried, const FloatArray& yield_m, Role role) {
-    for (const std::int32_t n : nearby.first(nearbyCount)) {
-      const auto s = static_cast<std::size_t>(n);
-      if (yielding[s] == 0) continue;
-      field.evaluate(SolidId(n), view(carried, block.first, block.count), lanes.distance.data(),
-                     lanes.normal.view(block.count));
-      float* ofPoint = yieldsOf(s);
-      std::uint32_t beyond = 0;
-      for (std::size_t l = 0; l < block.count; ++l) {
-        const float depth = lanes.fat[l] - lanes.distance[l], yield = yield_m[block.first + l];
-        beyond |= depth > yield ? std::uint32_t{1} << l : 0;
-        const float push = yield - 0.5f * (depth - yield);
-        ofPoint[l] = depth <= yield                      ? 0
-                     : role == Role::anchors && push > 0 ? depth - push
-                                                         : kFarAway;
-      }
-      if (deep) deep[s] = beyond & yielding[s];
-    }
-  }
-  float* yieldsOf(std::size_t solid) { return yields.data() + solid * PointBlock::kCapacity; }
-
   // Like visit(true), until no point is inside any solid or `passes` are used up. Returns the sum
   // of the passes' depths.
-  float leaveSolids(int passes) {
+  float leaveSolids(int passes, float retest_m) {
     float moved = 0;
     for (int pass = 0; pass < passes; ++pass) {
       const float depth = visit(true);
       moved += depth;
-      if (nearbyCount == 1 || !mustRetest()) break;
+      if (nearbyCount == 1 || !mustRetest(retest_m)) break;
     }
     return moved;
   }
 
   // Whether a point that was pushed out of one solid may have been pushed into another.
-  bool mustRetest() const {
+  bool mustRetest(float retest_m) const {
     bool must = false;
     for (std::size_t l = 0; l < block.count; ++l)
-      must |= lanes.pushed[l] > kRetest_m && lanes.clearance[l] < lanes.pushed[l];
+      must |= lanes.pushed[l] > retest_m && lanes.clearance[l] < lanes.pushed[l];
     return must;
   }
 
@@ -155,15 +100,6 @@ struct BlockTest {
   }
 };
 
-constexpr std::size_t kCorners = 8;
-
-Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
-void put(VectorArray& a, std::size_t k, const Eigen::Vector3f& p) {
-  a.x[k] = p.x(), a.y[k] = p.y(), a.z[k] = p.z();
-}
-
 void readBoxes(const Field& field, std::vector<Box>& boxes) {
   boxes.resize(field.solidCount());
   for (std::size_t s = 0; s < boxes.size(); ++s)
@@ -172,8 +108,8 @@ void readBoxes(const Field& field, std::vector<Box>& boxes) {
 
 }  // namespace
 
-FleshContact::FleshContact(std::vector<PointBlock> blocks, const FleshSense* sense, Role role)
-    : blocks_(std::move(blocks)), sense_(sense), role_(role), results_(blocks_.size()) {}
+FleshContact::FleshContact(std::vector<PointBlock> blocks)
+    : blocks_(std::move(blocks)), results_(blocks_.size()) {}
 
 FleshContact::Result FleshContact::project(const Field& field, const PointModel& points,
                                            float reach_m, float restitution, VectorArray& position,
@@ -184,9 +120,6 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
   const std::size_t solids = boxes_.size();
   const std::size_t tasks = (blocks_.size() + kBlocksPerTask - 1) / kBlocksPerTask;
   nearby_.resize(tasks * solids);
-  const std::size_t yieldsPerTask = sense_ && !anchors_ ? solids * PointBlock::kCapacity : 0;
-  if (role_ == Role::anchors) deep_.assign(blocks_.size() * solids, 0);
-  yields_.resize(tasks * yieldsPerTask);
   parallelFor(tasks, [&](std::size_t t) {
     ContactLanes lanes{};
     const std::span scratch(nearby_.data() + t * solids, solids);
@@ -202,20 +135,10 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
         gaps[s] = nearer < -kUnknown ? gaps[s] - nearer : kUnknown;
       }
       BlockTest test{field, blocks_[b], lanes, scratch, gaps};
-      if (sense_) {
-        const std::size_t first = b * solids;
-        test.felt = (role_ == Role::anchors ? sense_->yielding : sense_->felt).data() + first;
-        test.yielding = sense_->yielding.data() + first;
-        if (anchors_) test.overlooked = anchors_->deep_.data() + first;
-        if (role_ == Role::anchors) test.deep = deep_.data() + first;
-        if (yieldsPerTask > 0)
-          test.yields = std::span(yields_).subspan(t * yieldsPerTask, yieldsPerTask);
-      }
       float searched = reach_m, pushed = 0;
       bool any = test.findSolids(box, boxes_, searched);
       for (int search = 0; any && search < kSearches; ++search) {
-        if (yieldsPerTask > 0) test.findYields(around.carried, sense_->yield_m, role_);
-        pushed += test.leaveSolids(kPasses);
+        pushed += test.leaveSolids(kPasses, kRetest_m);
         if (kPushMargin * pushed <= searched) break;
         // Pushed so far that solids beyond the search may have come near.
         std::fill(gaps.begin(), gaps.end(), kUnknown);
@@ -224,9 +147,12 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
       }
       for (float& gap : gaps) gap -= kPushMargin * pushed;
       results_[b].maxCorrection_m = pushed;
-      if (any && role_ == Role::points) test.readFleshVelocities();
+      if (any) test.readFleshVelocities();
+      const std::size_t count = blocks_[b].count;
+      const ContactFindings found{lanes.place.view(count), lanes.nearest.data(),
+                                  lanes.nearestNormal.view(count), lanes.fleshVelocity.view(count)};
       results_[b].maxSpeed_m_per_s = finishContact(blocks_[b], any, reach_m, restitution, points,
-                                                   lanes, position, velocity, around);
+                                                   found, position, velocity, around);
     }
   });
 
@@ -248,57 +174,47 @@ float FleshContact::approach(const BlockMotion& block, const SolidMotion& solid)
   return (way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m;
 }
 
-// The motion of each solid since the last call, from eight material points around it.
+// The motion of each solid since the last call, from its outline.
 void FleshContact::followSolids(const Field& field) {
   const std::size_t solids = boxes_.size();
   const bool first = motions_.size() != solids;
-  if (first) gaps_.assign(blocks_.size() * solids, kUnknown);
-  if (anchors_) {
-    motions_ = anchors_->motions_;
-    return;
-  }
   if (first) {
+    gaps_.assign(blocks_.size() * solids, kUnknown);
     motions_.resize(solids);
     corners_.resize(solids * kCorners);
-    cornersNow_.resize(kCorners);
-    cornerMaterial_.resize(solids * kCorners);
-    for (std::size_t k = 0; k < solids * kCorners; ++k) {
-      const SolidId solid(static_cast<std::int64_t>(k / kCorners));
-      const Box& box = boxes_[solid.index()];
-      const Vec3 corner((k & 1 ? box.high : box.low).x(), (k & 2 ? box.high : box.low).y(),
-                        (k & 4 ? box.high : box.low).z());
-      put(cornerMaterial_, k, field.materialFromWorld(solid, corner).cast<float>());
-      put(corners_, k, corner.cast<float>());
-    }
   }
   for (std::size_t s = 0; s < solids; ++s) {
-    field.worldFromMaterials(SolidId(static_cast<std::int64_t>(s)),
-                             view(std::as_const(cornerMaterial_), s * kCorners, kCorners),
-                             view(cornersNow_, 0, kCorners));
-    motions_[s] = motionOf(s * kCorners);
-    for (std::size_t c = 0; c < kCorners; ++c) put(corners_, s * kCorners + c, get(cornersNow_, c));
+    const SolidId id(static_cast<std::int64_t>(s));
+    const Transform frame = field.frame(id);
+    const Field::Outline& outline = field.outline(id);
+    Corners now;
+    for (std::size_t c = 0; c < kCorners; ++c) now[c] = frame.point(outline[c]).cast<float>();
+    Eigen::Vector3f* before = corners_.data() + s * kCorners;
+    if (first) std::copy(now.begin(), now.end(), before);
+    motions_[s] = motionBetween(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
+    std::copy(now.begin(), now.end(), before);
   }
 }
 
-FleshContact::SolidMotion FleshContact::motionOf(std::size_t firstCorner) const {
-  const auto before = [&](std::size_t c) { return get(corners_, firstCorner + c); };
+FleshContact::SolidMotion FleshContact::motionBetween(
+    std::span<const Eigen::Vector3f, kCorners> before, const Corners& now) {
   SolidMotion m;
   Eigen::Matrix3f edges, edgesNow;
   for (int a = 0; a < 3; ++a) {
-    edges.col(a) = before(std::size_t{1} << a) - before(0);
-    edgesNow.col(a) = get(cornersNow_, std::size_t{1} << a) - get(cornersNow_, 0);
+    edges.col(a) = before[std::size_t{1} << a] - before[0];
+    edgesNow.col(a) = now[std::size_t{1} << a] - now[0];
   }
   const Eigen::Matrix3f map = edgesNow * edges.inverse();
   m.change = map - Eigen::Matrix3f::Identity();
-  m.origin = before(0);
-  m.shift = get(cornersNow_, 0) - before(0);
+  m.origin = before[0];
+  m.shift = now[0] - before[0];
   m.turn = m.change.norm();
   // Distances change where the map is not rigid, and where the corners do not follow it.
-  const float size = (before(kCorners - 1) - before(0)).norm();
+  const float size = (before[kCorners - 1] - before[0]).norm();
   m.extra_m = 2 * size * (map.transpose() * map - Eigen::Matrix3f::Identity()).norm();
   for (std::size_t c = 0; c < kCorners; ++c) {
-    const Eigen::Vector3f way = m.change * (before(c) - m.origin) + m.shift;
-    m.extra_m += (get(cornersNow_, c) - before(c) - way).norm();
+    const Eigen::Vector3f way = m.change * (before[c] - m.origin) + m.shift;
+    m.extra_m += (now[c] - before[c] - way).norm();
   }
   // A box without volume has no map: nothing is known then.
   if (!std::isfinite(m.turn) || !std::isfinite(m.extra_m)) {
@@ -308,24 +224,16 @@ FleshContact::SolidMotion FleshContact::motionOf(std::size_t firstCorner) const 
 }
 
 float FleshContact::deepest(const Field& field, const PointModel& points,
-                            const VectorArray& position, const VectorArray& carried) const {
+                            const VectorArray& position) const {
   std::vector<Box> boxes;
   readBoxes(field, boxes);
   std::vector<std::int32_t> nearby(boxes.size());
-  std::vector<float> yields(sense_ ? boxes.size() * PointBlock::kCapacity : 0);
   ContactLanes lanes{};
   float depth = 0;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const BlockBox box = loadContactLanes(blocks_[b], position, points.fat, lanes);
-    BlockTest test{field, blocks_[b], lanes, nearby};
-    if (sense_) {
-      test.felt = sense_->felt.data() + b * boxes.size();
-      test.yielding = sense_->yielding.data() + b * boxes.size();
-      test.yields = yields;
-    }
-    const bool any = test.findSolids(box, boxes, 0);
-    if (any && sense_) test.findYields(carried, sense_->yield_m, role_);
-    if (any) depth = std::max(depth, test.visit(false));
+  for (const PointBlock& block : blocks_) {
+    const BlockBox box = loadContactLanes(block, position, points.fat, lanes);
+    BlockTest test{field, block, lanes, nearby};
+    if (test.findSolids(box, boxes, 0)) depth = std::max(depth, test.visit(false));
   }
   return depth;
 }

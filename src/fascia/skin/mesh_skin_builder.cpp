@@ -100,6 +100,7 @@ void MeshSkinBuilder::build() {
   measureFat();
   chooseFixed();
   orderPoints();
+  makeSense();
   makeRestShape();
   setQuantities();
   makeModel();
@@ -222,23 +223,20 @@ void MeshSkinBuilder::orderPoints() {
     skin_.blocks_.push_back({k, static_cast<std::uint32_t>(std::min<std::size_t>(
                                     PointBlock::kCapacity, elasticCount_ - k))});
   for (std::size_t k = elasticCount_; k < order_.size(); ++k) skin_.fixedPoints_.push_back(k);
-  auto sense = std::make_shared<FleshSense>();
-  const std::size_t solids = base_.flesh.solidCount();
-  sense->felt.assign(skin_.blocks_.size() * solids, 0);
-  sense->yielding = sense->felt;
-  sense->yield_m.resize(skin_.blocks_.size() * PointBlock::kCapacity);
+}
+
+void MeshSkinBuilder::makeSense() {
+  std::vector<FleshSense::Feeling> feelings;
+  FloatArray yield_m(elasticCount_);
   for (std::size_t k = 0; k < elasticCount_; ++k) {
-    const auto bit = std::uint32_t{1} << (k % PointBlock::kCapacity);
-    sense->yield_m[k] = static_cast<float>(
+    yield_m[k] = static_cast<float>(
         std::max(kLeastYield * rig_.size_m(), kYieldOfFat * double{gap_[order_[k]]}));
     const bool shared = rig_.weights[order_[k]].weight[0] < 1 - kFeltWeight;
-    for (const SolidId solid : felt_[order_[k]]) {
-      const std::size_t entry = k / PointBlock::kCapacity * solids + solid.index();
-      sense->felt[entry] |= bit;
-      if (shared) sense->yielding[entry] |= bit;
-    }
+    for (const SolidId solid : felt_[order_[k]])
+      feelings.push_back({static_cast<std::uint32_t>(k), solid, shared});
   }
-  skin_.sense_ = std::move(sense);
+  skin_.sense_ = std::make_shared<FleshSense>(std::move(feelings), base_.flesh.solidCount(),
+                                              std::move(yield_m));
 }
 
 void MeshSkinBuilder::makeRestShape() {

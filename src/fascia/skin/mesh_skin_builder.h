@@ -30,6 +30,7 @@ class MeshSkinBuilder {
   void measureFat();
   void chooseFixed();
   void orderPoints();
+  void makeSense();
   void makeRestShape();
   void setQuantities();
   void makeModel();

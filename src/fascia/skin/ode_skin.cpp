@@ -65,7 +65,7 @@ void OdeSkin::load(std::span<const double> r, VectorArray& out) const {
   skin_.topology().complete(out);
 }
 
-void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, FleshContact& contact,
+void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, SkinContact& contact,
                       SkinState& state, SkinStats& stats) {
   start_s_ = start_s;
   poses_ = &poses, contact_ = &contact, state_ = &state;
@@ -180,8 +180,9 @@ void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<con
 
 double OdeSkin::violation(double t_s, std::span<const double> r) {
   load(r, position_);
-  return contact_->deepest(*poses_->at(t_s).field, skin_.points(), position_,
-                           state_->surroundings.carried);
+  const Field& field = *poses_->at(t_s).field;
+  contact_->findYielding(field, skin_.points(), state_->surroundings.carried);
+  return contact_->deepest(field, skin_.points(), position_);
 }
 
 double OdeSkin::project(double t_s, std::span<double> r, std::span<double> v) {
@@ -189,10 +190,11 @@ double OdeSkin::project(double t_s, std::span<double> r, std::span<double> v) {
   load(v, velocity_);
   positionBefore_ = position_;
   velocityBefore_ = velocity_;
-  const FleshContact::Result result =
-      contact_->project(*poses_->at(t_s).field, skin_.points(), 0.f,
-                        static_cast<float>(skin_.contactResponse().restitution), position_,
-                        velocity_, state_->surroundings);
+  const Field& field = *poses_->at(t_s).field;
+  contact_->findYielding(field, skin_.points(), state_->surroundings.carried);
+  const SkinContact::Result result = contact_->project(
+      field, skin_.points(), 0.f, static_cast<float>(skin_.contactResponse().restitution),
+      position_, velocity_, state_->surroundings);
   // Only what was changed goes back: the rest keeps its double precision.
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
     const std::size_t k = points_[p].storage;

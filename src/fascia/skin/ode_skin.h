@@ -3,6 +3,7 @@
 #include <fascia/math/ode/adaptive_stepper.h>
 #include <fascia/math/ode/system.h>
 #include <fascia/skin/skin.h>
+#include <fascia/skin/skin_contact.h>
 
 namespace fascia {
 
@@ -12,7 +13,7 @@ class OdeSkin final : public SecondOrderSystem {
  public:
   explicit OdeSkin(const Skin& skin);
 
-  void advance(SkinPoseSource& poses, double start_s, double end_s, FleshContact& contact,
+  void advance(SkinPoseSource& poses, double start_s, double end_s, SkinContact& contact,
                SkinState& state, SkinStats& stats);
 
   std::size_t size() const override { return inverseMass_.size(); }
@@ -74,7 +75,7 @@ class OdeSkin final : public SecondOrderSystem {
   // The interval being integrated.
   double start_s_ = 0;
   SkinPoseSource* poses_ = nullptr;
-  FleshContact* contact_ = nullptr;
+  SkinContact* contact_ = nullptr;
   SkinState* state_ = nullptr;
 };
 

@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "fascia/skin/point_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-#include <fascia/skin/simd_vector-inl.h>
+#include <fascia/skin/absorb-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace fascia {
@@ -92,42 +92,38 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
     const V gap = hn::IfThenElse(
         used, hn::Sub(hn::LoadU(d, lanes.distance.data() + l), hn::LoadU(d, lanes.fat.data() + l)),
         hn::Set(d, 1e30f));
-    const V depth = hn::Max(hn::Neg(gap), hn::Zero(d));
     smallest = hn::Min(smallest, gap);
     const V3 normal = pointers(lanes.normal).at(l);
-    const MutablePointers place = pointers(lanes.place);
     if (move) {
-      const MutablePointers push = pointers(lanes.pushNormal);
-      const V3 before = push.at(l);
-      const V back = hn::Min(dot(normal, before), hn::Zero(d));
-      // Along the other's surface t = n − (n·p) p the way out is depth / (n·t), n·t = 1 − (n·p)².
-      const V slope = hn::Max(hn::NegMulAdd(back, back, hn::Set(d, 1.f)), hn::Set(d, 0.02f));
-      const V3 along = mulAdd(hn::Neg(back), before, normal);
-      const auto inside = hn::And(used, hn::Gt(depth, hn::Zero(d)));
-      const V way = hn::Div(depth, slope);
-      place.set(l, select(inside, mulAdd(way, along, place.at(l)), place.at(l)));
-      const V pushed = hn::LoadU(d, lanes.pushed.data() + l);
+      V3 place = pointers(lanes.place).at(l), push = pointers(lanes.pushNormal).at(l);
+      V pushed = hn::LoadU(d, lanes.pushed.data() + l);
       const V clearance = hn::LoadU(d, lanes.clearance.data() + l);
+      const auto inside = hn::Lt(gap, hn::Zero(d));
       const auto again = hn::And(inside, hn::Gt(pushed, hn::Zero(d)));
       const V outsideGap = hn::Min(clearance, hn::IfThenElse(inside, clearance, gap));
       hn::StoreU(hn::IfThenElse(again, hn::Zero(d), outsideGap), d, lanes.clearance.data() + l);
-      hn::StoreU(hn::Add(pushed, hn::IfThenElseZero(inside, way)), d, lanes.pushed.data() + l);
-      push.set(l, select(inside, normal, before));
+      pushOut(gap, normal, place, push, pushed);
+      pointers(lanes.place).set(l, place);
+      pointers(lanes.pushNormal).set(l, push);
+      hn::StoreU(pushed, d, lanes.pushed.data() + l);
     }
-    const V outside = hn::Max(gap, hn::Zero(d));
-    const V nearest = hn::LoadU(d, lanes.nearest.data() + l);
-    const auto nearer = hn::Lt(outside, nearest);
-    hn::StoreU(hn::Min(outside, nearest), d, lanes.nearest.data() + l);
-    const MutablePointers kept = pointers(lanes.nearestNormal);
-    kept.set(l, select(nearer, normal, kept.at(l)));
-    float* solids = lanes.nearestSolid.data() + l;
-    hn::StoreU(hn::IfThenElse(nearer, hn::Set(d, solid), hn::LoadU(d, solids)), d, solids);
+    V nearest = hn::LoadU(d, lanes.nearest.data() + l);
+    V3 nearestNormal = pointers(lanes.nearestNormal).at(l);
+    V nearestSolid = hn::LoadU(d, lanes.nearestSolid.data() + l);
+    keepNearest(gap, normal, hn::Set(d, solid), nearest, nearestNormal, nearestSolid);
+    hn::StoreU(nearest, d, lanes.nearest.data() + l);
+    pointers(lanes.nearestNormal).set(l, nearestNormal);
+    hn::StoreU(nearestSolid, d, lanes.nearestSolid.data() + l);
   }
   return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
 
+inline Pointers pointers(const ConstVectors& a) {
+  return {a.x, a.y, a.z};
+}
+
 float finishImpl(const PointBlock& block, bool any, float reach, float restitution,
-                 const PointModel& points, const ContactLanes& lanes, VectorArray& position,
+                 const PointModel& points, const ContactFindings& found, VectorArray& position,
                  VectorArray& velocity, PointSurroundings& around) {
   const D d;
   const V zero = hn::Zero(d);
@@ -144,17 +140,17 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
       pointers(around.fleshVelocity).set(k, zero3);
       hn::StoreU(zero, d, around.offset.data() + k);
     } else {
-      const V nearest = hn::LoadU(d, lanes.nearest.data() + l);
+      const V nearest = hn::LoadU(d, found.nearest + l);
       const auto isFree = hn::Gt(hn::LoadU(d, points.free.data() + k), zero);
       // A point that was moved out of a solid may end a little outside of it, or well outside.
-      const V3 place = r.at(k), way = pointers(lanes.place).at(l) - place;
+      const V3 place = r.at(k), way = pointers(found.place).at(l) - place;
       const auto candidate = hn::And(used, isFree);
       const auto moved = hn::And(candidate, hn::Gt(dot(way, way), zero));
       const auto touching = hn::Or(moved, hn::And(candidate, hn::Le(nearest, hn::Set(d, reach))));
       const auto onFlesh = hn::Or(moved, hn::And(touching, hn::Le(nearest, zero)));
-      const V3 normal = select(touching, pointers(lanes.nearestNormal).at(l), zero3);
-      const V3 flesh = select(touching, pointers(lanes.fleshVelocity).at(l), zero3);
-      const V3 now = select(onFlesh, pointers(lanes.place).at(l), place);
+      const V3 normal = select(touching, pointers(found.normal).at(l), zero3);
+      const V3 flesh = select(touching, pointers(found.fleshVelocity).at(l), zero3);
+      const V3 now = select(onFlesh, pointers(found.place).at(l), place);
       const V approach = hn::Min(dot(normal, speed - flesh), zero);
       speed = select(
           onFlesh, mulAdd(hn::Mul(hn::Set(d, -1.f - restitution), approach), normal, speed), speed);
@@ -245,9 +241,9 @@ float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lan
 }
 
 float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,
-                    const PointModel& points, const ContactLanes& lanes, VectorArray& position,
+                    const PointModel& points, const ContactFindings& found, VectorArray& position,
                     VectorArray& velocity, PointSurroundings& around) {
-  return HWY_DYNAMIC_DISPATCH(finishImpl)(block, any, reach_m, restitution, points, lanes, position,
+  return HWY_DYNAMIC_DISPATCH(finishImpl)(block, any, reach_m, restitution, points, found, position,
                                           velocity, around);
 }
 

@@ -59,16 +59,22 @@ BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
                           BlockMotion* motion = nullptr);
 
 // Takes up the distances and normals to one solid: moves points that are inside out of it (if
-// `move`), keeps the nearest. Returns the smallest gap found, negative = inside. A point that
-// another solid has just moved, and that would be moved back into it, leaves along that one's
-// surface instead: in a crease between two solids going to and fro would take dozens of turns.
+// `move`), keeps the nearest. Returns the smallest gap found, negative = inside.
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes);
+
+// What was found out about a run of points, from its first on.
+struct ContactFindings {
+  ConstVectors place;          // where contact has moved them
+  const float* nearest;        // gap to the nearest solid, ≥ 0
+  ConstVectors normal;         // of that solid
+  ConstVectors fleshVelocity;  // of its matter
+};
 
 // Writes the result of a block: moved positions, velocities without their approaching part, half
 // spaces. `any` = false: nothing is within reach. Returns the largest squared speed
 // relative to the anchors.
 float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,
-                    const PointModel& points, const ContactLanes& lanes, VectorArray& position,
+                    const PointModel& points, const ContactFindings& found, VectorArray& position,
                     VectorArray& velocity, PointSurroundings& around);
 
 // Anchor velocities of the coming interval. What anchors change in velocity, the flesh of the half

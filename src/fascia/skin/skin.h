@@ -13,7 +13,8 @@
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/rig/rigged_model.h>
 #include <fascia/skin/fat_pressure.h>
-#include <fascia/skin/flesh_contact.h>
+#include <fascia/skin/flesh_sense.h>
+#include <fascia/skin/point_kernels.h>
 #include <fascia/skin/grid_topology.h>
 #include <fascia/skin/joint_carrier.h>
 #include <fascia/skin/joint_volume.h>

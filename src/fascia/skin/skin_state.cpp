@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fascia/skin/felt_contact.h>
+#include <fascia/skin/flesh_contact.h>
 #include <fascia/skin/resample.h>
 #include <fascia/skin/skin.h>
 
@@ -51,11 +53,17 @@ void carrySkin(const Skin& skin, const SkinPose& pose, SkinState& state) {
   skin.placeAll(pose, scratch, state.position);
 }
 
+std::unique_ptr<SkinContact> makeContact(const Skin& skin) {
+  if (skin.sense()) return std::make_unique<FeltContact>(*skin.sense());
+  return std::make_unique<FleshContact>(
+      std::vector<PointBlock>(skin.blocks().begin(), skin.blocks().end()));
+}
+
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats) {
-  const FleshContact contact({skin.blocks().begin(), skin.blocks().end()}, skin.sense());
+  const std::unique_ptr<SkinContact> contact = makeContact(skin);
+  contact->findYielding(*pose.field, skin.points(), state.surroundings.carried);
   stats.max_penetration_m = std::max<double>(
-      stats.max_penetration_m,
-      contact.deepest(*pose.field, skin.points(), state.position, state.surroundings.carried));
+      stats.max_penetration_m, contact->deepest(*pose.field, skin.points(), state.position));
   stats.max_edge_stretch =
       std::max(stats.max_edge_stretch, skin.topology().maxStretch(state.position));
 }

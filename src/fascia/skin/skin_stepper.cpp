@@ -19,9 +19,6 @@ constexpr double kRidingStep_s = 1.0 / 960;
 // A skin point whose anchor jumps farther than this share of the skin's size within one interval
 // has been teleported with the body, not moved.
 constexpr double kJump = 0.2;
-// Solids within this share of the skin's size of an anchor are tested at once: more than most
-// pushes need, and few solids more.
-constexpr float kAnchorReach = 0.01f;
 // Points that may slide only so far need no wider one, however hard a body is shaken.
 constexpr float kSlidingReach = 0.02f;
 // How long an anchor takes, mostly, to where the flesh leads it aside: limbs of imported figures
@@ -61,23 +58,13 @@ bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anc
 }  // namespace
 
 SkinStepper::SkinStepper(const Skin& skin)
-    : skin_(&skin),
-      surface_(skin.topology().makeStepper()),
-      contact_({skin.blocks().begin(), skin.blocks().end()}, skin.sense()),
-      anchorContact_({skin.blocks().begin(), skin.blocks().end()}, skin.sense(),
-                     FleshContact::Role::anchors) {
+    : skin_(&skin), surface_(skin.topology().makeStepper()), contact_(makeContact(skin)) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
-  if (skin.sense()) {
-    nextCarried_.resize(skin.topology().storage());
-    ignoredVelocity_.resize(skin.topology().storage());
-    ignoredSurroundings_.resize(skin.topology().storage());
-  }
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
   if (skin.fatPressure())
     fatPressure_ = FatPressure(*skin.fatPressure(), skin.topology().storage());
   const std::string& integrator = skin.settings().integrator;
   if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
-  if (skin.sense() && !ode_) contact_.follow(anchorContact_);
   if (integrator == "auto" && skin.coarse()) {
     coarse_ = std::make_unique<SkinStepper>(*skin.coarse());
     prolongation_ = Prolongation(skin.coarse()->layout(), skin.layout());
@@ -152,7 +139,7 @@ void SkinStepper::odeInterval(SkinPoseSource& poses, double start_s, double end_
   Stopwatch watch;
   surround(poses.at(end_s), end_s - start_s, state, stats);
   watch.lap(stats.other_s);
-  ode_->advance(poses, start_s, end_s, contact_, state, stats);
+  ode_->advance(poses, start_s, end_s, *contact_, state, stats);
   watch = Stopwatch();  // the solver books its own time
   settle(poses.at(end_s), end_s - start_s, state, stats);
   watch.lap(stats.constraints_s);
@@ -184,10 +171,7 @@ void SkinStepper::placeAnchors(const SkinPose& pose, VectorArray& anchor) {
   skin_->placeAnchors(pose, scratch_, anchor);
   if (!skin_->sense()) return;
   nextCarried_ = anchor;
-  ignoredSurroundings_.carried = anchor;
-  anchorContact_.project(*pose.field, skin_->points(),
-                         kAnchorReach * static_cast<float>(skin_->size_m()), 0.f, anchor,
-                         ignoredVelocity_, ignoredSurroundings_);
+  contact_->projectAnchors(*pose.field, skin_->points(), anchor);
 }
 
 // Brings the next anchors from where they were beside their joints nearer to where flesh leads
@@ -275,6 +259,8 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
     std::swap(state.surroundings.anchor, nextAnchor_);
     std::swap(state.surroundings.carried, nextCarried_);
   }
+  // A solver of the library asks at other times, and with other anchors, in between.
+  if (ode_) contact_->findYielding(*pose.field, skin_->points(), state.surroundings.carried);
   if (!skin_->points().slideLimit.empty()) limitSlide(state);
   skin_->topology().complete(state.position);
   // More than the way that the fastest point goes until the next test.
@@ -283,9 +269,9 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
       std::min(1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) + 0.005f * size,
                skin_->points().slideLimit.empty() ? size : kSlidingReach * size);
   state.maxSpeed_m_per_s = contact_
-                               .project(*pose.field, skin_->points(), reach,
-                                        static_cast<float>(skin_->contactResponse().restitution),
-                                        state.position, state.velocity, state.surroundings)
+                               ->project(*pose.field, skin_->points(), reach,
+                                         static_cast<float>(skin_->contactResponse().restitution),
+                                         state.position, state.velocity, state.surroundings)
                                .maxSpeed_m_per_s;
   if (skin_->selfContact())
     selfContact_.resolve(skin_->points(), 0.002f * static_cast<float>(skin_->size_m()),

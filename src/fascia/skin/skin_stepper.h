@@ -5,6 +5,7 @@
 
 #include <fascia/skin/prolongation.h>
 #include <fascia/skin/skin.h>
+#include <fascia/skin/skin_contact.h>
 
 namespace fascia {
 
@@ -40,12 +41,11 @@ class SkinStepper {
   const Skin* skin_;
   StepCoefficients coefficients_;
   std::unique_ptr<SurfaceStepper> surface_;
-  FleshContact contact_, anchorContact_;
+  std::unique_ptr<SkinContact> contact_;
   SelfContact selfContact_;
   FatPressure fatPressure_;
-  VectorArray nextAnchor_, nextCarried_, target_, ignoredVelocity_;
+  VectorArray nextAnchor_, nextCarried_, target_;
   FloatArray wholly_;  // ones
-  PointSurroundings ignoredSurroundings_;
   CarryScratch scratch_;
   std::unique_ptr<OdeSkin> ode_;
 

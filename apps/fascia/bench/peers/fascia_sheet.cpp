@@ -46,6 +46,8 @@ class Spheres final : public Field {
                 Vectors normal) const override {
     evaluatePosed(sphere_, frame_[solid.index()], points, distance_m, normal);
   }
+  Transform frame(SolidId solid) const override { return frame_[solid.index()]; }
+  const Outline& outline(SolidId) const override { return sphere_.outline_m(); }
   void velocity(SolidId solid, ConstVectors, Vectors velocity) const override {
     const Vec3& v = velocity_[solid.index()];
     for (std::size_t i = 0; i < velocity.count; ++i) {

@@ -52,24 +52,19 @@ class BendDeformation final : public Deformation {
     return j;
   }
 
-  // The bent part in slices: the corners of a slice, and the height of the arc between them.
+  // Lines along z become arcs: their ends, and where an arc turns back along an axis.
   Box bounds(std::span<const double> p, double zHalf_m, const Box& box) const override {
     if (p[0] == 0) return box;
-    constexpr int kSlices = 16;
-    Box image;
+    const double k = p[0] / (2 * zHalf_m);
     const double low = std::max(box.low.z(), -zHalf_m), high = std::min(box.high.z(), zHalf_m);
+    Box image;
     for (const double x : {box.low.x(), box.high.x()}) {
-      for (int i = 0; i <= kSlices; ++i) {
-        const double z = low + (high - low) * i / kSlices;
-        image.add(forward(p, zHalf_m, {x, box.low.y(), z}));
-      }
       image.add(forward(p, zHalf_m, {x, box.low.y(), box.low.z()}));
       image.add(forward(p, zHalf_m, {x, box.low.y(), box.high.z()}));
+      // At quarter turns; |k z| <= π/2, so that there are no more.
+      for (const double z : {-0.5 * kPi / k, 0.0, 0.5 * kPi / k})
+        if (z > low && z < high) image.add(forward(p, zHalf_m, {x, box.low.y(), z}));
     }
-    const double k = std::abs(p[0]) / (2 * zHalf_m), reach = reachAlongX(box);
-    const double arcHeight = (1 / k + reach) * (1 - std::cos(0.5 * k * (high - low) / kSlices));
-    image.low -= Vec3(arcHeight, 0, arcHeight);
-    image.high += Vec3(arcHeight, 0, arcHeight);
     image.high.y() = box.high.y();
     return image;
   }

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+
+#include <fascia/base/aligned.h>
+#include <fascia/field/field.h>
+#include <fascia/skin/point_model.h>
+
+namespace fascia {
+
+class Skin;
+
+// Non-penetration of skin and flesh (spec L10, L11): every point keeps the distance of its fat τ
+// from every solid that it feels. The paper tests the point moved inward along the skin's normal,
+// g(r − τ n) ≥ 0; as a distance changes at most as fast as its point moves, d(r) ≥ τ implies that
+// for every n, also where the skin folds and its normal is doubtful. Knows nothing of how points
+// are connected.
+class SkinContact {
+ public:
+  virtual ~SkinContact() = default;
+
+  struct Result {
+    float maxCorrection_m = 0;
+    float maxSpeed_m_per_s = 0;  // relative to the anchors
+  };
+
+  // Projects points out of the solids exactly, removes the approaching part of their velocity
+  // relative to the flesh, and writes each point's half space (normal, offset, flesh velocity) for
+  // the steps that follow: the nearest solid within `reach_m`. A point in several solids is
+  // projected in turn until it is outside of all, or kPasses are used up.
+  virtual Result project(const Field& field, const PointModel& points, float reach_m,
+                         float restitution, VectorArray& position, VectorArray& velocity,
+                         PointSurroundings& around) = 0;
+
+  // How deep the deepest point is (m, ≥ 0), measured afresh and without changing anything.
+  virtual float deepest(const Field& field, const PointModel& points,
+                        const VectorArray& position) const = 0;
+
+  // Where points yield to flesh that the pose itself drives over them (see FleshSense): takes their
+  // places as their joints alone carry them, for the calls that follow. Empty: not known.
+  virtual void findYielding(const Field&, const PointModel&, const VectorArray& /*carried*/) {}
+  // The same, and keeps these places out of the flesh: they are the strands' inner ends.
+  virtual void projectAnchors(const Field&, const PointModel&, VectorArray& /*anchor*/) {}
+
+ protected:
+  static constexpr int kPasses = 16;  // more than creases of three solids need
+  // A point that was pushed farther than this may have been pushed into another solid.
+  static constexpr float kRetest_m = 1e-5f;
+};
+
+// The kind that suits the skin.
+std::unique_ptr<SkinContact> makeContact(const Skin& skin);
+
+}  // namespace fascia
