@@ -30,7 +30,7 @@ struct Line {
     points.free.assign(storage, 1.f);
     for (std::size_t i = 0; i < storage; ++i)
       position.x[i] = static_cast<float>(kRadius_m - depth(i));
-    around.carried = position;
+    around.anchor = position;
     letYield(false);
   }
   static double depth(std::size_t i) { return 0.0015 * static_cast<double>(i % 64) + 0.0007; }
@@ -89,24 +89,37 @@ TEST(FleshSense, MeasuresDepthOnlyWhereSolidsAreFelt) {
               1e-6);
 }
 
-TEST(FleshSense, YieldsWhereThePoseItselfDrivesFleshOverAPoint) {
-  Line line;
-  line.letYield();
-  FeltContact contact(line.sense);
-  contact.findYielding(line.field, line.points, line.around.carried);
-  line.project(contact);
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    const bool felt = Line::depth(i) <= kYield_m;
-    EXPECT_NEAR(line.pushed(i), felt ? Line::depth(i) : 0, 1e-5) << i;
+TEST(FleshSense, YieldsToFleshAsFarAsTheAnchorLiesInIt) {
+  for (const float share : {0.f, 0.5f, 1.f}) {
+    Line line;
+    line.letYield();
+    for (std::size_t i = 0; i < kPoints; ++i)
+      line.around.anchor.x[i] = static_cast<float>(kRadius_m - share * Line::depth(i));
+    FeltContact contact(line.sense);
+    contact.findYielding(line.field, line.points, line.around.anchor);
+    const double left = contact.deepest(line.field, line.points, line.position);
+    EXPECT_NEAR(left, (1 - share) * Line::depth(63), 1e-6);
+    line.project(contact);
+    for (std::size_t i = 0; i < kPoints; ++i)
+      EXPECT_NEAR(line.pushed(i), (1 - share) * Line::depth(i), 1e-5) << i;
+    EXPECT_LT(contact.deepest(line.field, line.points, line.position), 1e-5);
   }
 }
 
-TEST(FleshSense, KeepsPushingWhatItsJointsCarryOutside) {
+TEST(FleshSense, KeepsPushingWhereTheAnchorLiesOutside) {
   Line line;
   line.letYield();
-  for (float& x : line.around.carried.x) x = static_cast<float>(kRadius_m) + 0.01f;
+  for (float& x : line.around.anchor.x) x = static_cast<float>(kRadius_m) + 0.01f;
   FeltContact contact(line.sense);
-  contact.findYielding(line.field, line.points, line.around.carried);
+  contact.findYielding(line.field, line.points, line.around.anchor);
+  line.project(contact);
+  for (std::size_t i = 0; i < kPoints; ++i) EXPECT_NEAR(line.pushed(i), Line::depth(i), 1e-5) << i;
+}
+
+TEST(FleshSense, NeverYieldsWherePointsAreToldNotTo) {
+  Line line;
+  FeltContact contact(line.sense);
+  contact.findYielding(line.field, line.points, line.around.anchor);
   line.project(contact);
   for (std::size_t i = 0; i < kPoints; ++i) EXPECT_NEAR(line.pushed(i), Line::depth(i), 1e-5) << i;
 }
@@ -126,21 +139,15 @@ TEST(FleshSense, LetsAnchorsYieldGentlyUpToThreeTimesTheYield) {
   EXPECT_GT(between, 20u);
 }
 
-TEST(FleshSense, LearnsFromTheAnchorsWhichPointsYield) {
-  Line alone;
-  alone.letYield();
-  FeltContact contact(alone.sense);
-  contact.findYielding(alone.field, alone.points, alone.around.carried);
-  alone.project(contact);
-
+TEST(FleshSense, LeavesPointsOnTheirAnchors) {
   Line line;
   line.letYield();
-  FeltContact both(line.sense);
-  VectorArray anchor = line.position;
-  both.projectAnchors(line.field, line.points, anchor);
-  line.project(both);
+  FeltContact contact(line.sense);
+  contact.projectAnchors(line.field, line.points, line.around.anchor);
+  contact.findYielding(line.field, line.points, line.around.anchor);
+  line.project(contact);
   for (std::size_t i = 0; i < kPoints; ++i)
-    EXPECT_EQ(line.position.x[i], alone.position.x[i]) << Line::depth(i);
+    EXPECT_NEAR(line.position.x[i], line.around.anchor.x[i], 1e-5) << Line::depth(i);
 }
 
 }  // namespace

@@ -77,10 +77,10 @@ class FeltContact::ChunkContact {
   }
 
   // Bounds of all the gaps. With lowered limits, pairs that are not nearest for sure are beyond.
-  void bound(Pairs which, Memory& memory, const FloatArray& floor, bool lowerLimits,
+  void bound(Pairs which, Memory& memory, const FloatArray& yield, bool lowerLimits,
              FloatArray& bound) {
     for (const Group& g : groups_)
-      boundPairs(memory.solids[g.solid.index()], pairsOf(g, which), of(g, memory, floor),
+      boundPairs(memory.solids[g.solid.index()], pairsOf(g, which), of(g, memory, yield),
                  lowerLimits, lanes_, bound.data() + g.first);
   }
 
@@ -99,36 +99,35 @@ class FeltContact::ChunkContact {
     for (const Group& g : groups_)
       if (ask(g, which, bound)) each(g);
   }
-  static FeltMemory of(const Group& g, Memory& memory, const FloatArray& floor) {
+  static FeltMemory of(const Group& g, Memory& memory, const FloatArray& yield) {
     const std::size_t p = g.first;
     return {{memory.place.x.data() + p, memory.place.y.data() + p, memory.place.z.data() + p},
             memory.lower.data() + p,
             memory.upper.data() + p,
-            floor.data() + p};
+            yield.data() + p};
   }
   void absorb(const Group& g, bool move) {
     absorbPairs(static_cast<float>(g.solid.index()), move, batch_, lanes_);
   }
 
-  // Finds out which pairs of the batch yield.
-  void yield(const Group& g, FloatArray& floor) {
+  // How deep the pairs of the batch are.
+  void measureDepths(const Group& g, FloatArray& depth) {
     for (std::size_t i = 0; i < batch_.count; ++i)
-      if (-batch_.gap[i] > yieldOf(i)) floor[pair(g, i)] = kFarAway;
+      depth[pair(g, i)] = std::max(0.f, -batch_.gap[i]);
   }
-  // The same, and by how much anchors do, which makes their gaps wider.
-  void yieldGently(const Group& g, FloatArray& floor, FloatArray& anchorYield, FloatArray& bound) {
+  // By how much the batch's anchors yield, which makes their gaps wider.
+  void yieldGently(const Group& g, FloatArray& yield, FloatArray& bound) {
     for (std::size_t i = 0; i < batch_.count; ++i) {
       const float depth = -batch_.gap[i], most = yieldOf(i);
       if (!(depth > most)) continue;
       const float push = most - 0.5f * (depth - most);
-      const float yield = push > 0 ? depth - push : kFarAway;
-      floor[pair(g, i)] = kFarAway;
-      anchorYield[pair(g, i)] = yield;
-      bound[pair(g, i)] += yield;
+      yield[pair(g, i)] = push > 0 ? depth - push : kFarAway;
+      bound[pair(g, i)] += yield[pair(g, i)];
     }
-    widen(g, anchorYield);
+    widen(g, yield);
   }
   void widen(const Group& g, const FloatArray& yield) {
+    if (g.firstFirm == g.first) return;
     for (std::size_t i = 0; i < batch_.count; ++i) batch_.gap[i] += yield[pair(g, i)];
   }
 
@@ -244,45 +243,49 @@ FeltContact::FeltContact(const FleshSense& sense)
     : sense_(&sense),
       points_(sense),
       anchors_(sense),
-      floor_(sense.pairCount(), -kFarAway),
-      noFloor_(floor_),
-      bound_(floor_),
-      anchorYield_(sense.pairCount(), 0.f),
+      yield_(sense.pairCount(), 0.f),
+      noYield_(yield_),
+      bound_(yield_),
       busy_(sense.groups.size()),
       results_(sense.chunks.size()) {}
-
-void FeltContact::findYielding(const Field& field, const PointModel& points,
-                               const VectorArray& carried) {
-  floor_ = noFloor_;
-  if (carried.size() == 0) return;
-  parallelFor(sense_->chunks.size(), [&](std::size_t c) {
-    ChunkContact chunk(*sense_, sense_->chunks[c], field);
-    using Pairs = ChunkContact::Pairs;
-    chunk.load(carried, points, 0);
-    chunk.visit(Pairs::yielding, noFloor_, [&](const Group& g) { chunk.yield(g, floor_); });
-  });
-}
 
 void FeltContact::projectAnchors(const Field& field, const PointModel& points,
                                  VectorArray& anchor) {
   anchors_.follow(field);
-  floor_ = noFloor_;
-  std::fill(anchorYield_.begin(), anchorYield_.end(), 0.f);
+  yield_ = noYield_;
   parallelFor(sense_->chunks.size(), [&](std::size_t c) {
     const Chunk& run = sense_->chunks[c];
     ChunkContact chunk(*sense_, run, field);
     using Pairs = ChunkContact::Pairs;
     chunk.load(anchor, points, 0);
-    chunk.bound(Pairs::yielding, anchors_, noFloor_, false, bound_);
+    chunk.bound(Pairs::yielding, anchors_, noYield_, false, bound_);
     chunk.visit(Pairs::yielding, bound_, [&](const Group& g) {
       rememberPairs(anchors_.solids[g.solid.index()].frame, chunk.batch(),
-                    ChunkContact::of(g, anchors_, noFloor_));
-      chunk.yieldGently(g, floor_, anchorYield_, bound_);
+                    ChunkContact::of(g, anchors_, noYield_));
+      chunk.yieldGently(g, yield_, bound_);
       chunk.absorb(g, false);
     });
     chunk.leaveSolids(Pairs::yielding, bound_, busy(run),
-                      [&](const Group& g) { chunk.widen(g, anchorYield_); });
+                      [&](const Group& g) { chunk.widen(g, yield_); });
     chunk.store(anchor);
+  });
+}
+
+void FeltContact::findYielding(const Field& field, const PointModel& points,
+                               const VectorArray& anchor) {
+  yield_ = noYield_;
+  if (anchor.size() == 0) return;
+  anchors_.follow(field);
+  parallelFor(sense_->chunks.size(), [&](std::size_t c) {
+    ChunkContact chunk(*sense_, sense_->chunks[c], field);
+    using Pairs = ChunkContact::Pairs;
+    chunk.load(anchor, points, 0);
+    chunk.bound(Pairs::yielding, anchors_, noYield_, false, bound_);
+    chunk.visit(Pairs::yielding, bound_, [&](const Group& g) {
+      rememberPairs(anchors_.solids[g.solid.index()].frame, chunk.batch(),
+                    ChunkContact::of(g, anchors_, noYield_));
+      chunk.measureDepths(g, yield_);
+    });
   });
 }
 
@@ -295,14 +298,15 @@ FeltContact::Result FeltContact::project(const Field& field, const PointModel& p
     ChunkContact chunk(*sense_, run, field);
     using Pairs = ChunkContact::Pairs;
     chunk.load(position, points, reach_m);
-    chunk.bound(Pairs::all, points_, floor_, true, bound_);
+    chunk.bound(Pairs::all, points_, yield_, true, bound_);
     chunk.visit(Pairs::all, bound_, [&](const Group& g) {
       rememberPairs(points_.solids[g.solid.index()].frame, chunk.batch(),
-                    ChunkContact::of(g, points_, floor_));
+                    ChunkContact::of(g, points_, yield_));
+      chunk.widen(g, yield_);
       chunk.absorb(g, false);
     });
-    results_[c].maxCorrection_m =
-        chunk.leaveSolids(Pairs::all, bound_, busy(run), [](const Group&) {});
+    results_[c].maxCorrection_m = chunk.leaveSolids(
+        Pairs::all, bound_, busy(run), [&](const Group& g) { chunk.widen(g, yield_); });
     chunk.readFleshVelocities(reach_m);
     const PointBlock block{run.firstPoint, static_cast<std::uint32_t>(run.points)};
     results_[c].maxSpeed_m_per_s = finishContact(block, true, reach_m, restitution, points,
@@ -323,7 +327,8 @@ float FeltContact::deepest(const Field& field, const PointModel& points,
   for (const Chunk& run : sense_->chunks) {
     ChunkContact chunk(*sense_, run, field);
     chunk.load(position, points, 0);
-    chunk.visit(ChunkContact::Pairs::all, floor_, [&](const Group&) {
+    chunk.visit(ChunkContact::Pairs::all, noYield_, [&](const Group& g) {
+      chunk.widen(g, yield_);
       for (std::size_t i = 0; i < chunk.batch().count; ++i)
         depth = std::max(depth, -chunk.batch().gap[i]);
     });

@@ -19,14 +19,14 @@ class FeltContact final : public SkinContact {
 
   Result project(const Field& field, const PointModel& points, float reach_m, float restitution,
                  VectorArray& position, VectorArray& velocity, PointSurroundings& around) override;
-  // Of pairs that do not yield, see findYielding.
+  // Beyond what yields, see findYielding.
   float deepest(const Field& field, const PointModel& points,
                 const VectorArray& position) const override;
-  void findYielding(const Field& field, const PointModel& points,
-                    const VectorArray& carried) override;
-  // Anchors yield gently: a depth x becomes a push of x up to the yield, of less the deeper it is,
-  // and of 0 beyond three yields.
+  // A depth x becomes a push of x up to the yield, of less the deeper it is, and of 0 beyond three
+  // yields.
   void projectAnchors(const Field& field, const PointModel& points, VectorArray& anchor) override;
+  void findYielding(const Field& field, const PointModel& points,
+                    const VectorArray& anchor) override;
 
  private:
   using Chunk = FleshSense::Chunk;
@@ -50,10 +50,9 @@ class FeltContact final : public SkinContact {
 
   const FleshSense* sense_;
   Memory points_, anchors_;
-  FloatArray floor_;             // per pair: kFarAway where a point yields altogether
-  FloatArray noFloor_;           // where none does
+  FloatArray yield_;             // per pair: how deep the point, or anchor, may be
+  FloatArray noYield_;           // where none does
   FloatArray bound_;             // per pair: least gap now
-  FloatArray anchorYield_;       // per pair: see projectAnchors
   std::vector<char> busy_;       // per group: whether it has points that are being moved
   std::vector<Result> results_;  // per chunk
 };

@@ -87,10 +87,10 @@ void boundImpl(const FeltSolid& solid, std::span<const std::int32_t> point,
     // What is not a number makes a gap unknown.
     const V least = hn::Sub(lower, distance), most = hn::Add(upper, distance);
     const auto known = hn::Eq(least, least);
-    const V floor = hn::LoadU(d, memory.floor + i);
-    hn::StoreU(hn::Max(hn::IfThenElse(known, least, hn::Neg(far)), floor), d, bound + i);
+    const V yield = hn::LoadU(d, memory.yield + i);
+    hn::StoreU(hn::Add(hn::IfThenElse(known, least, hn::Neg(far)), yield), d, bound + i);
     if (!lowerLimits) continue;
-    const V limit = hn::Max(hn::IfThenElse(known, most, far), floor);
+    const V limit = hn::Add(hn::IfThenElse(known, most, far), yield);
     scatter(hn::Min(gather(lanes.limit, k), limit), k, lanes.limit);
   }
 }

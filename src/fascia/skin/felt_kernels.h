@@ -50,7 +50,7 @@ struct alignas(kSimdAlignment) FeltBatch {
 struct FeltMemory {
   Vectors place;         // then, in the solid's frame
   float *lower, *upper;  // bounds of the gap, while the point does not move in that frame
-  const float* floor;    // the bounds are at least this: kFarAway for what is not felt now
+  const float* yield;    // what is added to the gap: how deep the point may be now
 };
 
 // A solid as a group sees it.

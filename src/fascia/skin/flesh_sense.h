@@ -20,9 +20,10 @@ struct FleshSense {
   struct Feeling {
     std::uint32_t point;  // storage index
     SolidId solid;
-    // Whether other joints move the point too, so that the pose can drive the solid over it: where
-    // the joints alone would carry it deeper than its yield it no longer feels the solid. What a
-    // clip puts inside of another limb is not torn off.
+    // Whether other joints move the point too, so that the pose can drive the solid over it. What a
+    // clip puts inside of another limb is not torn off: where the joints alone would carry it
+    // deeper than its yield, the solid pushes its anchor less the deeper it is, and not beyond
+    // three yields; the point itself may be as deep as its anchor is.
     bool yields;
   };
   // A chunk's pairs with one solid: those that yield are [first, firstFirm), the others

@@ -36,11 +36,11 @@ class SkinContact {
   virtual float deepest(const Field& field, const PointModel& points,
                         const VectorArray& position) const = 0;
 
-  // Where points yield to flesh that the pose itself drives over them (see FleshSense): takes their
-  // places as their joints alone carry them, for the calls that follow. Empty: not known.
-  virtual void findYielding(const Field&, const PointModel&, const VectorArray& /*carried*/) {}
-  // The same, and keeps these places out of the flesh: they are the strands' inner ends.
+  // Keeps the strands' inner ends out of the flesh, as far as it does not yield (see FleshSense).
   virtual void projectAnchors(const Field&, const PointModel&, VectorArray& /*anchor*/) {}
+  // Lets points yield to flesh as far as their strands' inner ends lie in it, in the calls that
+  // follow.
+  virtual void findYielding(const Field&, const PointModel&, const VectorArray& /*anchor*/) {}
 
  protected:
   static constexpr int kPasses = 16;  // more than creases of three solids need

@@ -61,7 +61,7 @@ std::unique_ptr<SkinContact> makeContact(const Skin& skin) {
 
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats) {
   const std::unique_ptr<SkinContact> contact = makeContact(skin);
-  contact->findYielding(*pose.field, skin.points(), state.surroundings.carried);
+  contact->findYielding(*pose.field, skin.points(), state.surroundings.anchor);
   stats.max_penetration_m = std::max<double>(
       stats.max_penetration_m, contact->deepest(*pose.field, skin.points(), state.position));
   stats.max_edge_stretch =

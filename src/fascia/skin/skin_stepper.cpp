@@ -259,8 +259,7 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
     std::swap(state.surroundings.anchor, nextAnchor_);
     std::swap(state.surroundings.carried, nextCarried_);
   }
-  // A solver of the library asks at other times, and with other anchors, in between.
-  if (ode_) contact_->findYielding(*pose.field, skin_->points(), state.surroundings.carried);
+  contact_->findYielding(*pose.field, skin_->points(), state.surroundings.anchor);
   if (!skin_->points().slideLimit.empty()) limitSlide(state);
   skin_->topology().complete(state.position);
   // More than the way that the fastest point goes until the next test.
