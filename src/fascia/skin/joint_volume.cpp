@@ -15,11 +15,26 @@ constexpr std::size_t kLeastPoints = 8;  // fewer enclose nothing that one sees
 // The longest way out as a share of the limb's radius: what a pose takes beyond that is a fold of
 // the pose, not flesh that has to go somewhere.
 constexpr float kLongest = 0.25f;
+// Ways out set in over this share of the longest, and near it gently, so that no motion is kicked.
+constexpr float kSetIn = 0.03f;
 // How quickly the inner side of a bend is left out as the limb folds.
 constexpr float kLeaveOut = 2;
 
 Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
   return {a.x[k], a.y[k], a.z[k]};
+}
+
+Eigen::Matrix3f turnOf(const JointCarrier::Motion& motion) {
+  Eigen::Matrix3f turn;
+  for (int c = 0; c < 3; ++c) turn.col(c) = motion.column[c].head<3>();
+  return turn;
+}
+
+// The way out for a wanted one: none inwards, and less than the longest.
+float gentle(float wanted_m, float longest_m) {
+  const float out_m = std::max(0.f, wanted_m);
+  const float set = out_m * out_m / (out_m + kSetIn * longest_m), share = set / longest_m;
+  return set / std::sqrt(1 + share * share);
 }
 
 // 1 where a point hangs half on either side of a joint.
@@ -57,7 +72,8 @@ JointVolume::JointVolume(std::span<const JointCarrier::Joint> joints,
       shares[j][p.point] = static_cast<float>(ofPoint[j]);
   }
   for (std::size_t j = 0; j < joints.size(); ++j)
-    if (joints[j].parent >= 0) addRegion(shares[j], triangles);
+    if (joints[j].parent >= 0)
+      addRegion(j, static_cast<std::size_t>(joints[j].parent), shares[j], triangles);
 
   Scratch scratch;
   scratch.place.resize(localCount_);
@@ -65,7 +81,10 @@ JointVolume::JointVolume(std::span<const JointCarrier::Joint> joints,
   for (Region& r : regions_) {
     r.volume_m3 = gather(r, rest, scratch);
     float area_m2 = 0;
-    for (std::size_t i = 0; i < r.points.size(); ++i) area_m2 += scratch.area[r.first + i].norm();
+    for (std::size_t i = 0; i < r.points.size(); ++i) {
+      area_m2 += scratch.area[r.first + i].norm();
+      r.normal.push_back(scratch.area[r.first + i].normalized());
+    }
     // A cylinder's radius is 2 V / A.
     r.longest_m = area_m2 > 0 ? kLongest * 2 * r.volume_m3 / area_m2 : 0;
   }
@@ -73,9 +92,12 @@ JointVolume::JointVolume(std::span<const JointCarrier::Joint> joints,
   std::erase_if(regions_, [](const Region& r) { return !(r.volume_m3 > 0 && r.longest_m > 0); });
 }
 
-void JointVolume::addRegion(std::span<const float> shares, std::span<const Triangle> triangles) {
+void JointVolume::addRegion(std::size_t joint, std::size_t parent, std::span<const float> shares,
+                            std::span<const Triangle> triangles) {
   const auto bends = [&](std::uint32_t p) { return bellOf(shares[p]) > kRim; };
   Region region;
+  region.joint = joint;
+  region.parent = parent;
   for (const Triangle& t : triangles) {
     if (!bends(t[0]) && !bends(t[1]) && !bends(t[2])) continue;
     region.triangles.push_back(t);
@@ -145,7 +167,8 @@ float JointVolume::gather(const Region& region, const VectorArray& place, Scratc
   return volume_m3;
 }
 
-void JointVolume::moveOut(const Region& region, float missing_m3, Scratch& scratch) {
+void JointVolume::moveOut(const Region& region, std::span<const JointCarrier::Motion> motion,
+                          float missing_m3, Scratch& scratch) {
   const std::span at = std::span(scratch.place).subspan(region.first);
   const std::span area = std::span(scratch.area).subspan(region.first);
   // The two sides' middles as seen from the joint's own: they point away from each other in a
@@ -165,27 +188,29 @@ void JointVolume::moveOut(const Region& region, float missing_m3, Scratch& scrat
   const Eigen::Vector3f inner =
       length > 0 ? Eigen::Vector3f(kLeaveOut / length * (one + other)) : Eigen::Vector3f::Zero();
 
+  const Eigen::Matrix3f turn = turnOf(motion[region.joint]),
+                        parentTurn = turnOf(motion[region.parent]);
   float sum_m2 = 0;
   for (std::size_t i = 0; i < region.points.size(); ++i) {
-    const float size = area[i].norm();
+    const float onJoint = 0.5f * (1 + region.side[i]);
     const Eigen::Vector3f normal =
-        size > 0 ? Eigen::Vector3f(area[i] / size) : Eigen::Vector3f::Zero();
+        onJoint * (turn * region.normal[i]) + (1 - onJoint) * (parentTurn * region.normal[i]);
     const float share = region.bell[i] * std::clamp(1 - normal.dot(inner), 0.f, 1.f);
-    sum_m2 += share * size;
+    sum_m2 += share * area[i].norm();
     area[i] = share * normal;
   }
-  const float way_m =
-      sum_m2 > 0 ? std::clamp(missing_m3 / sum_m2, 0.f, region.longest_m) : 0.f;
+  const float way_m = gentle(sum_m2 > 0 ? missing_m3 / sum_m2 : 0.f, region.longest_m);
   for (std::size_t i = 0; i < region.points.size(); ++i) area[i] *= way_m;
 }
 
-void JointVolume::restore(float share, Scratch& scratch, VectorArray& place) const {
+void JointVolume::restore(float share, std::span<const JointCarrier::Motion> motion,
+                          Scratch& scratch, VectorArray& place) const {
   scratch.place.resize(localCount_);
   scratch.area.resize(localCount_);
   parallelFor(regions_.size(), [&](std::size_t r) {
     const Region& region = regions_[r];
     const float volume_m3 = gather(region, place, scratch);
-    moveOut(region, share * (region.volume_m3 - volume_m3), scratch);
+    moveOut(region, motion, share * (region.volume_m3 - volume_m3), scratch);
   });
   // A point may lie in several regions.
   for (const Region& region : regions_)

@@ -14,11 +14,11 @@
 #include <fascia/rig/rigged_model.h>
 #include <fascia/skin/fat_pressure.h>
 #include <fascia/skin/flesh_sense.h>
-#include <fascia/skin/point_kernels.h>
 #include <fascia/skin/grid_topology.h>
 #include <fascia/skin/joint_carrier.h>
 #include <fascia/skin/joint_volume.h>
 #include <fascia/skin/leapfrog.h>
+#include <fascia/skin/point_kernels.h>
 #include <fascia/skin/point_model.h>
 #include <fascia/skin/quantities.h>
 #include <fascia/skin/self_contact.h>
@@ -111,9 +111,11 @@ class Skin {
   };
   const std::vector<Fixed>& fixed() const { return fixed_; }
 
-  // Where a pose carries things. Each writes the entries of the points meant; the first also those
-  // of a mesh's fixed points.
+  // Where a pose carries things. Each writes the entries of the points meant, and no others.
   void placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
+  // Moves anchors so that joints keep their volume, right after they were placed. Also writes
+  // entries of fixed points.
+  void keepVolume(const SkinPose& pose, CarryScratch& scratch, VectorArray& anchor) const;
   void placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
   void placeAll(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
   std::span<const std::size_t> fixedPoints() const { return fixedPoints_; }  // storage indices

@@ -15,14 +15,16 @@ void SkinState::addTo(StateHash& hash, const SkinTopology& topology) const {
 }
 
 void Skin::placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
-  if (isGrid()) {
+  if (isGrid())
     anchors_.place(*pose.field, scratch.points, out);
-    return;
-  }
-  anchorsByJoints_.place(pose.joints, scratch.motion, out);
+  else
+    anchorsByJoints_.place(pose.joints, scratch.motion, out);
+}
+
+void Skin::keepVolume(const SkinPose& pose, CarryScratch& scratch, VectorArray& anchor) const {
   if (jointVolume_.empty()) return;
-  fixedByJoints_.place(pose.joints, scratch.motion, out);
-  jointVolume_.restore(keptVolume_, scratch.volume, out);
+  fixedByJoints_.place(pose.joints, scratch.motion, anchor);
+  jointVolume_.restore(keptVolume_, scratch.motion, scratch.volume, anchor);
 }
 
 void Skin::placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {

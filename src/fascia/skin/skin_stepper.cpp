@@ -21,8 +21,9 @@ constexpr double kRidingStep_s = 1.0 / 960;
 constexpr double kJump = 0.2;
 // Points that may slide only so far need no wider one, however hard a body is shaken.
 constexpr float kSlidingReach = 0.02f;
-// How long an anchor takes, mostly, to where the flesh leads it aside: limbs of imported figures
-// dive into other flesh and out of it within a frame, and skin that followed at once would tremble.
+// How long an anchor takes, mostly, to where flesh leads it aside that bulges at a bend or that a
+// clip drives over it: that comes and goes within a frame or two, and skin that followed at once
+// would tremble.
 constexpr double kAnchorSlide_s = 0.03;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
@@ -171,11 +172,12 @@ void SkinStepper::placeAnchors(const SkinPose& pose, VectorArray& anchor) {
   skin_->placeAnchors(pose, scratch_, anchor);
   if (!skin_->sense()) return;
   nextCarried_ = anchor;
+  skin_->keepVolume(pose, scratch_, anchor);
   contact_->projectAnchors(*pose.field, skin_->points(), anchor);
 }
 
-// Brings the next anchors from where they were beside their joints nearer to where flesh leads
-// them.
+// Brings the next anchors from where they were, beside where joints carry them, nearer to where
+// flesh leads them.
 void SkinStepper::slideAnchors(double duration_s, const PointSurroundings& around) {
   const auto share = static_cast<float>(1 - std::exp(-duration_s / kAnchorSlide_s));
   for (const auto axis : kAxes) {
