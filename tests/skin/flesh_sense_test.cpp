@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <fascia/base/random.h>
 #include <fascia/skin/felt_contact.h>
 
 #include "test_fields.h"
@@ -148,6 +149,43 @@ TEST(FleshSense, LeavesPointsOnTheirAnchors) {
   line.project(contact);
   for (std::size_t i = 0; i < kPoints; ++i)
     EXPECT_NEAR(line.position.x[i], line.around.anchor.x[i], 1e-5) << Line::depth(i);
+}
+
+// What is known from earlier calls saves work only: through turns, ways and swelling, and with
+// points that go their own ways, a contact that remembers finds what a new one finds.
+TEST(FleshSense, FindsTheSameWithAndWithoutMemory) {
+  Line line;
+  Random random(5);
+  line.field.parts.clear();
+  line.field.add(test::superellipsoid(0.2, 0.15, 0.25, 0.7, 0.8), {});
+  line.field.add(test::superellipsoid(0.12, 0.2, 0.1, 0.9, 1), {});
+  line.letYield(false);
+  for (std::size_t i = 0; i < kPoints; ++i)
+    test::put(
+        line.position, i,
+        Vec3(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)));
+  FeltContact remembering(line.sense);
+  std::size_t moved = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    for (RigidSolids::Part& part : line.field.parts) {
+      part.world.rotation *= Eigen::AngleAxisd(0.03, Vec3(1, 2, -1).normalized()).matrix();
+      part.world.translation_m += Vec3(0.004, -0.002, 0.003) * std::sin(0.5 * frame);
+      part.solid.setParameter(0, part.solid.parameter(0) + 0.002 * std::cos(0.3 * frame));
+    }
+    for (std::size_t i = 0; i < kPoints; ++i)
+      line.position.y[i] += static_cast<float>(random.uniform(-0.003, 0.003));
+    Line fresh = line;
+    FeltContact forgetful(fresh.sense);
+    fresh.project(forgetful);
+    const VectorArray before = line.position;
+    line.project(remembering);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      ASSERT_EQ(test::at(line.position, i), test::at(fresh.position, i)) << frame << " " << i;
+      ASSERT_EQ(test::at(line.around.normal, i), test::at(fresh.around.normal, i)) << frame;
+      moved += test::at(line.position, i) != test::at(before, i);
+    }
+  }
+  EXPECT_GT(moved, 500u);
 }
 
 }  // namespace

@@ -89,6 +89,15 @@ void JointCarrier::place(std::span<const Transform> joints, std::vector<Motion>&
 void JointCarrier::placeRange(const std::vector<Motion>& motion, std::size_t begin, std::size_t end,
                               VectorArray& out) const {
   for (std::size_t p = begin; p < end; ++p) {
+    const std::size_t k = storage_[p];
+    if (firstInfluence_[p + 1] == firstInfluence_[p] + 1) {  // rides on one joint
+      const Motion& m = motion[influences_[firstInfluence_[p]].joint];
+      const Eigen::Vector4f rest = center_[p] + arm_[p];
+      const Eigen::Vector4f r =
+          m.column[0] * rest.x() + m.column[1] * rest.y() + m.column[2] * rest.z() + m.column[3];
+      out.x[k] = r.x(), out.y[k] = r.y(), out.z[k] = r.z();
+      continue;
+    }
     const Eigen::Vector4f center = center_[p];
     const Eigen::Vector4f& first = motion[influences_[firstInfluence_[p]].joint].turn;
     Eigen::Vector4f turn = Eigen::Vector4f::Zero(), place = Eigen::Vector4f::Zero();
@@ -101,10 +110,7 @@ void JointCarrier::placeRange(const std::vector<Motion>& motion, std::size_t beg
                     m.column[3]);
     }
     const Eigen::Vector3f r = place.head<3>() + turned(turn.normalized(), arm_[p].head<3>());
-    const std::size_t k = storage_[p];
-    out.x[k] = r.x();
-    out.y[k] = r.y();
-    out.z[k] = r.z();
+    out.x[k] = r.x(), out.y[k] = r.y(), out.z[k] = r.z();
   }
 }
 

@@ -226,11 +226,11 @@ void MeshSkinBuilder::orderPoints() {
 }
 
 void MeshSkinBuilder::makeSense() {
+  const double leastYield_m = kLeastYield * rig_.size_m();
   std::vector<FleshSense::Feeling> feelings;
   FloatArray yield_m(elasticCount_);
   for (std::size_t k = 0; k < elasticCount_; ++k) {
-    yield_m[k] = static_cast<float>(
-        std::max(kLeastYield * rig_.size_m(), kYieldOfFat * double{gap_[order_[k]]}));
+    yield_m[k] = static_cast<float>(std::max(leastYield_m, kYieldOfFat * double{gap_[order_[k]]}));
     const bool shared = rig_.weights[order_[k]].weight[0] < 1 - kFeltWeight;
     for (const SolidId solid : felt_[order_[k]])
       feelings.push_back({static_cast<std::uint32_t>(k), solid, shared});

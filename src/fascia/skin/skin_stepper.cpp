@@ -256,10 +256,12 @@ void SkinStepper::leapfrog(int steps, double duration_s, SkinState& state, SkinS
 void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& state,
                          SkinStats& stats) {
   repair(pose, state, stats);
-  skin_->placeFixed(pose, scratch_, state.position);
   if (state.ready) {
+    takeFixed(state.position);
     std::swap(state.surroundings.anchor, nextAnchor_);
     std::swap(state.surroundings.carried, nextCarried_);
+  } else {
+    skin_->placeFixed(pose, scratch_, state.position);
   }
   contact_->findYielding(*pose.field, skin_->points(), state.surroundings.anchor);
   if (!skin_->points().slideLimit.empty()) limitSlide(state);
@@ -279,6 +281,12 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
                          state.position, state.velocity, state.surroundings,
                          static_cast<float>(duration_s));
   skin_->topology().complete(state.position);
+}
+
+// Fixed points to where surround() has found that this interval's end carries them.
+void SkinStepper::takeFixed(VectorArray& position) const {
+  for (const std::size_t k : skin_->fixedPoints())
+    for (const auto axis : kAxes) (position.*axis)[k] = (target_.*axis)[k];
 }
 
 // Tissue gives way only so far, however hard a body is shaken: points that are farther from their

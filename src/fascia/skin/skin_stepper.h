@@ -35,6 +35,7 @@ class SkinStepper {
   void leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats);
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void settle(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
+  void takeFixed(VectorArray& position) const;
   void limitSlide(SkinState& state) const;
   void repair(const SkinPose& pose, SkinState& state, SkinStats& stats);
 
