@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "motion_file.h"
 #include "outputs.h"
 #include "rig_bake.h"
 #include "simulation_options.h"
@@ -68,7 +70,7 @@ void writeOutput(const Character& character, const Recording& recording, const s
                  std::vector<std::string>& written, Json::List& bakes) {
   const std::string ending = endingOf(path);
   if (ending == ".glb" && character.def().rig) {
-    const RigBakeReport report = writeRigBake(character, recording, options.rig, path);
+    const RigBakeReport report = writeRigBake(character, recording, options.rig, path, console);
     bakes.push_back(describe(report, *character.def().rig->model, path, console));
     written.insert(written.end(), report.files.begin(), report.files.end());
     return;
@@ -80,12 +82,44 @@ void writeOutput(const Character& character, const Recording& recording, const s
   written.push_back(path);
 }
 
+// No file may be written twice, or over what the character is made of.
+void checkFiles(const Character& character, const std::string& motionFile,
+                const BakeOptions& options) {
+  namespace fs = std::filesystem;
+  const auto placeOf = [](const fs::path& path) { return fs::weakly_canonical(path); };
+  std::vector<fs::path> taken{placeOf(options.character)};
+  if (const std::optional<RigDef>& rig = character.def().rig)
+    taken.push_back(placeOf(fs::path(options.character).parent_path() / rig->file));
+  if (!motionFile.empty()) taken.push_back(placeOf(motionFile));
+  const std::size_t inputs = taken.size();
+  std::vector<std::string> files{options.stats};
+  for (const std::string& output : options.outputs)
+    for (const std::string& file : filesOf(character, options.rig, output)) files.push_back(file);
+  for (const std::string& file : files) {
+    if (file.empty()) continue;
+    const auto found = std::find(taken.begin(), taken.end(), placeOf(file));
+    if (found != taken.end()) {
+      Issue issue;
+      issue.where.file = file;
+      issue.message = found - taken.begin() < static_cast<std::ptrdiff_t>(inputs)
+                          ? "is what the character is made of, and would be overwritten"
+                          : "would be written twice";
+      issue.hint = "choose another name";
+      throw Error(std::move(issue));
+    }
+    taken.push_back(placeOf(file));
+  }
+}
+
 void bake(BakeOptions& options, const Console& console) {
   checkFolders(options.outputs);
   checkFolders({options.stats});
   const ThreadLimit threads(options.simulation.threads);
+  const std::string motionFile =
+      isMotionFile(options.simulation.motion) ? options.simulation.motion : std::string();
   const Character character = prepareCharacter(options.character, options.simulation, console);
-  checkRigBake(character, options.rig);
+  checkRigBake(character, options.rig, options.outputs);
+  checkFiles(character, motionFile, options);
   const Recording recording =
       simulate(character, options.simulation.recordOptions(character), console);
   std::vector<std::string> written;

@@ -93,6 +93,8 @@ std::string sizeProblem(const std::string& text, int low, int high) {
 
 Character prepareCharacter(const std::string& path, SimulationOptions& options,
                            const Console& console) {
+  if (!options.joint_map.empty() && !isMotionFile(options.motion))
+    throw Error("--joint-map belongs to a motion from a file, such as --motion walk.bvh");
   CharacterFile file = readCharacterFile(path);
   if (isMotionFile(options.motion)) {
     if (!file.def.rig)

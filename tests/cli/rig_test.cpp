@@ -107,8 +107,11 @@ TEST_F(CliRig, CacheHoldsTheRig) {
 // Motions, joints and materials of the file stay; how faithful the bake is gets told.
 TEST_F(CliRig, BakesBackIntoItsFileInThreeWays) {
   for (const std::string as : {"bones", "morphs", "cache"}) {
-    const Outcome outcome = run({"bake", "tube.fascia.json", "--motion", "bend", "--as", as,
-                                 "--helpers", "3", "--targets", "4", "-o", as + ".glb", "--json"});
+    std::vector<std::string> command{"bake", "tube.fascia.json", "--motion", "bend", "--as", as,
+                                     "-o",   as + ".glb",        "--json"};
+    if (as == "bones") command.insert(command.end(), {"--helpers", "3"});
+    if (as == "morphs") command.insert(command.end(), {"--targets", "4"});
+    const Outcome outcome = run(command);
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_THAT(content(as + ".glb"), StartsWith("glTF"));
     const nlohmann::json bake = outcome.json().at("bakes").at(0);
@@ -122,6 +125,43 @@ TEST_F(CliRig, BakesBackIntoItsFileInThreeWays) {
   EXPECT_EQ(again.json().at("rig_joints"), 2 + 3);
   EXPECT_EQ(again.json().at("rig_materials").at(0).at("name"), "rubber");
   EXPECT_EQ(again.json().at("motions").size(), 2u);
+}
+
+// What a bake must not write, and the file that the message names.
+TEST_F(CliRig, BakeNeverWritesOverWhatItReadsNorTwice) {
+  const std::string rig = content("tube.gltf"), character = content("tube.fascia.json");
+  write("nod.bvh", smallBvh());
+  const std::vector<std::vector<std::string>> refused{
+      {"-o", "a.glb", "-o", "./a.glb"},
+      {"--as", "cache", "-o", "a.glb", "-o", "a.pc2"},
+      {"-o", "a.fcache", "--stats", "tube.gltf"},
+      {"-o", "a.fcache", "--stats", "tube.fascia.json"}};
+  for (const std::vector<std::string>& options : refused) {
+    std::vector<std::string> command{"bake", "tube.fascia.json"};
+    command.insert(command.end(), options.begin(), options.end());
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.out;
+    EXPECT_THAT(outcome.err, HasSubstr("choose another name"));
+    for (const char* file : {"a.glb", "a.pc2", "a.fcache"}) EXPECT_FALSE(exists(file)) << file;
+  }
+  EXPECT_EQ(content("tube.gltf"), rig);
+  EXPECT_EQ(content("tube.fascia.json"), character);
+}
+
+TEST_F(CliRig, OptionsThatWouldDoNothingAreRefused) {
+  const std::vector<std::vector<std::string>> refused{
+      {"--as", "morphs", "--helpers", "3", "-o", "a.glb"},
+      {"--targets", "3", "-o", "a.glb"},
+      {"--as", "cache", "-o", "a.pc2"},
+      {"--joint-map", "tube.gltf", "-o", "a.glb"}};
+  for (const std::vector<std::string>& options : refused) {
+    std::vector<std::string> command{"bake", "tube.fascia.json"};
+    command.insert(command.end(), options.begin(), options.end());
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.out;
+    EXPECT_THAT(outcome.err, HasSubstr(options[0] == "--as" ? "--" : options[0]));
+    EXPECT_FALSE(exists("a.glb"));
+  }
 }
 
 TEST_F(CliRig, SkinsOnGridsHaveNoFileToGoBackTo) {

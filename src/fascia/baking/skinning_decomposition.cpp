@@ -86,9 +86,13 @@ class Alternation {
 
   void run() {
     fitWeights(everyPoint_);
-    for (int h = 0; h < options_.helperBones && rms_m() > noError_m_; ++h) addHelper();
+    for (int h = 0; h < options_.helperBones && rms_m() > noError_m_; ++h) {
+      tell(h);
+      addHelper();
+    }
     double before = rms_m();
     for (int round = 0; round < options_.iterations && !parents_.empty(); ++round) {
+      tell(options_.helperBones + round);
       fitHelperMotions(problem_, weights_, rigBoneCount_, 1, bones_);
       fitWeights(everyPoint_);
       const bool moved = moveIdleHelpers();
@@ -103,6 +107,10 @@ class Alternation {
   const std::vector<PointWeights>& weights() const { return weights_; }
 
  private:
+  void tell(int done) const {
+    const double all = std::max(1, options_.helperBones + options_.iterations);
+    if (options_.progress) options_.progress(done / all);
+  }
   double rms_m() {
     squaredErrors(problem_, weights_, bones_, error_m2_);
     return rmsOf(error_m2_, problem_.frameCount);

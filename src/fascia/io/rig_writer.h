@@ -46,7 +46,8 @@ RigBakeReport writeRigAsMorphs(const RigClip& clip, const MorphOptions& options,
 
 // The rest surface without a skeleton as a GLB, and for every mesh a point cache of all frames in
 // two formats beside it: "fox.glb" gets "fox.pc2" and "fox.mdd", with the mesh' name in between if
-// there are several.
+// there are several. The first tells all names, the .glb's first.
+std::vector<std::string> filesOfRigCache(const RiggedModel& model, const std::string& path);
 RigBakeReport writeRigAsCache(const RigClip& clip, const std::string& path);
 
 }  // namespace fascia

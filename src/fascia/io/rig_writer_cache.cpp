@@ -222,29 +222,37 @@ double largestDifference(const Recording& wanted, const PointCache& pc2, const M
 
 }  // namespace
 
+std::vector<std::string> filesOfRigCache(const RiggedModel& model, const std::string& path) {
+  const std::vector<CachedMesh> meshes = meshesOf(model);
+  const std::string base = std::filesystem::path(path).replace_extension().string();
+  std::vector<std::string> files{path};
+  std::set<std::string> taken;
+  for (const CachedMesh& mesh : meshes) {
+    std::string stem = base;
+    if (meshes.size() > 1) stem.append(1, '.').append(fileNameOf(mesh.name, taken));
+    files.insert(files.end(), {stem + ".pc2", stem + ".mdd"});
+  }
+  return files;
+}
+
 RigBakeReport writeRigAsCache(const RigClip& clip, const std::string& path) {
   RigSource source = RigSource::open(clip);
   const std::vector<CachedMesh> meshes = meshesOf(clip.model);
-  const std::filesystem::path base = std::filesystem::path(path).replace_extension();
   RigBakeReport report;
-  std::set<std::string> taken;
+  report.files = filesOfRigCache(clip.model, path);
   double sum_m2 = 0, entries = 0;
-  for (const CachedMesh& mesh : meshes) {
-    std::string stem = base.string();
-    if (meshes.size() > 1) stem.append(1, '.').append(fileNameOf(mesh.name, taken));
-    const Recording cache = cacheOf(mesh, clip.recording);
-    writePc2(cache, stem + ".pc2");
-    writeMdd(cache, stem + ".mdd");
-    const double largest =
-        largestDifference(cache, readPc2(stem + ".pc2"), readMdd(stem + ".mdd"), sum_m2);
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const std::string &pc2 = report.files[2 * m + 1], &mdd = report.files[2 * m + 2];
+    const Recording cache = cacheOf(meshes[m], clip.recording);
+    writePc2(cache, pc2);
+    writeMdd(cache, mdd);
+    const double largest = largestDifference(cache, readPc2(pc2), readMdd(mdd), sum_m2);
     report.error.max_mm = std::max(report.error.max_mm, 1e3 * largest);
-    entries += static_cast<double>(cache.frames.size() * mesh.vertices.size());
-    report.files.insert(report.files.end(), {stem + ".pc2", stem + ".mdd"});
+    entries += static_cast<double>(cache.frames.size() * meshes[m].vertices.size());
   }
   report.error.rms_mm = 1e3 * std::sqrt(sum_m2 / entries);
   StillWriter(source).write(meshes);
   source.document.writeGlb(path);
-  report.files.insert(report.files.begin(), path);
   return report;
 }
 

@@ -93,9 +93,10 @@ CodecPtr<SkinTissueDef> tissueCodec() {
       .field("carry", &T::carry, numbers({0, 1}),
              "share of the flesh's changes of velocity that the skin takes over at once: 0 shakes "
              "like jelly, 1 not at all")
-      .field("keep_volume", &T::keep_volume, numbers({0, 1}),
-             "On imported meshes: share of what a bending joint would lose of its flesh that bulges "
-             "out around it")
+      .field(
+          "keep_volume", &T::keep_volume, numbers({0, 1}),
+          "On imported meshes: share of what a bending joint would lose of its flesh that bulges "
+          "out around it")
       .field("rest_length_m", &T::rest_length_m, optionally(numbers({0, 1})),
              "None: the length at attachment");
   return codec;

@@ -12,6 +12,8 @@ namespace {
 
 // Limits for selectPairs: pairs that are felt at all, and none.
 constexpr float kFelt = 0.1f * kFarAway, kNothing = -3e38f;
+// From so many yields of depth on, anchors are not pushed.
+constexpr float kYieldsAltogether = 3;
 // No point of a surface moves farther than so many times the farthest point of its outline.
 constexpr double kOutlineShare = 2;
 
@@ -110,17 +112,18 @@ class FeltContact::ChunkContact {
     absorbPairs(static_cast<float>(g.solid.index()), move, batch_, lanes_);
   }
 
-  // How deep the pairs of the batch are.
+  // How deep the batch's anchors are. Deep inside of a solid distances are poor estimates: a point
+  // whose anchor is deeper than its yield does not feel the solid.
   void measureDepths(const Group& g, FloatArray& depth) {
     for (std::size_t i = 0; i < batch_.count; ++i)
-      depth[pair(g, i)] = std::max(0.f, -batch_.gap[i]);
+      depth[pair(g, i)] = -batch_.gap[i] < yieldOf(i) ? std::max(0.f, -batch_.gap[i]) : kFarAway;
   }
   // By how much the batch's anchors yield, which makes their gaps wider.
   void yieldGently(const Group& g, FloatArray& yield, FloatArray& bound) {
     for (std::size_t i = 0; i < batch_.count; ++i) {
       const float depth = -batch_.gap[i], most = yieldOf(i);
       if (!(depth > most)) continue;
-      const float push = most - 0.5f * (depth - most);
+      const float push = most - (depth - most) / (kYieldsAltogether - 1);
       yield[pair(g, i)] = push > 0 ? depth - push : kFarAway;
       bound[pair(g, i)] += yield[pair(g, i)];
     }
