@@ -9,6 +9,8 @@
 namespace fascia {
 namespace {
 
+constexpr float kInterval_s = 1.f / 60;
+
 // Limbs side by side, as fingers or thighs are: tubes along z, each a piece of skin of its own.
 struct Limbs {
   static constexpr double kRadius_m = 0.05, kLength_m = 0.8;
@@ -78,8 +80,9 @@ void selfContact(benchmark::State& state, int limbs, int columns, int rows, int 
     scene.around.normal.fill(0.f);
     state.ResumeTiming();
     contacts =
-        scene.contact.resolve(scene.points, 0.005f, scene.position, scene.velocity, scene.around)
+        scene.contact.separate(scene.points, 0.005f, scene.position, scene.velocity, kInterval_s)
             .contacts;
+    scene.contact.writeHalfSpaces(scene.position, scene.velocity, kInterval_s, scene.around);
   }
   state.counters["points"] = static_cast<double>(start.size());
   state.counters["contacts"] = static_cast<double>(contacts);

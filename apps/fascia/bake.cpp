@@ -86,7 +86,9 @@ void writeOutput(const Character& character, const Recording& recording, const s
 void checkFiles(const Character& character, const std::string& motionFile,
                 const BakeOptions& options) {
   namespace fs = std::filesystem;
-  const auto placeOf = [](const fs::path& path) { return fs::weakly_canonical(path); };
+  const auto placeOf = [](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path));
+  };
   std::vector<fs::path> taken{placeOf(options.character)};
   if (const std::optional<RigDef>& rig = character.def().rig)
     taken.push_back(placeOf(fs::path(options.character).parent_path() / rig->file));

@@ -38,6 +38,7 @@ SkinDef skinFor(const RiggedModel& model) {
   skin.material.prestretch = 1;
   skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
   skin.fat.compressible = 0.8;
+  skin.contact.self = true;
   skin.contact.gap_m = std::clamp(0.0006 * size, 1e-6, 1.0);
   return skin;
 }

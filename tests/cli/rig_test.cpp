@@ -134,6 +134,7 @@ TEST_F(CliRig, BakeNeverWritesOverWhatItReadsNorTwice) {
   const std::vector<std::vector<std::string>> refused{
       {"-o", "a.glb", "-o", "./a.glb"},
       {"--as", "cache", "-o", "a.glb", "-o", "a.pc2"},
+      {"-o", "a.fcache", "--stats", "a.fcache"},
       {"-o", "a.fcache", "--stats", "tube.gltf"},
       {"-o", "a.fcache", "--stats", "tube.fascia.json"}};
   for (const std::vector<std::string>& options : refused) {

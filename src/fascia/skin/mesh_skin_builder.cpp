@@ -341,10 +341,6 @@ void MeshSkinBuilder::makeModel() {
     skin_.points_.slideLimit[k] = static_cast<float>(slide + sag(k).norm());
   }
   skin_.defaultStep_s_ = kStep_s;
-  if (def_.contact.self) {
-    skin_.selfContact_ = std::make_shared<SelfContactModel>(prepareSelfContact(
-        storedTriangles(), skin_.rest_, skin_.blocks_, static_cast<float>(def_.contact.gap_m)));
-  }
 
   MeshTopology::Drawn drawn;
   for (const RigVertex& v : rig_.vertices) {
@@ -380,6 +376,8 @@ void MeshSkinBuilder::carryPoints() {
     skin_.jointVolume_ = JointVolume(joints_, inner, storedTriangles(), placed(inner));
     skin_.keptVolume_ = static_cast<float>(def_.tissue.keep_volume);
   }
+  if (def_.contact.self)
+    skin_.creases_ = std::make_shared<CreaseModel>(prepareCreases(joints_, all, elasticCount_));
   if (def_.fat.bulk_Pa > 0) layFat(placed(all), placed(inner));
 }
 

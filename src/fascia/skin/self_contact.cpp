@@ -18,14 +18,15 @@ constexpr int kVelocityPasses = 2;
 // The strength of a contact reaches 1 where the cosine of the normals is this much below its limit:
 // a point that turns away is let go gradually, not dropped and caught again.
 constexpr float kFacingFade = 0.3f;
-// A deep point comes up over several intervals: this many gaps and this share of the way in each.
-// At once it would be flung, and the elastic skin torn along.
-constexpr float kMostGaps = 2, kMostShare = 0.25f;
+// A deep point comes up over several intervals, this share of the edges around it in each. At once
+// it would be flung, and the elastic skin torn along.
+constexpr float kMostWay = 0.25f;
+// A point that is moved may stand out from its neighbours' mean by this share of the edges around
+// it, beyond what it does at rest. More, and triangles turn over and find contacts of their own:
+// dense skin melts.
+constexpr float kMostRough = 0.35f;
 // Within this share of the gap sheets touch: approaching is over.
 constexpr float kTouching = 0.05f;
-// Cosine of a way and the flesh's normal below which the flesh stops it instead of leading it
-// aside.
-constexpr float kAgainst = -0.5f;
 // By how many gaps another sheet must be more urgent than the flesh to take its half space: less
 // than a resting point trembles, and it would go to and fro between the two.
 constexpr float kMoreUrgent = 0.05f;
@@ -43,22 +44,16 @@ Eigen::Vector3f blend(const VectorArray& a, const std::array<std::uint32_t, 3>& 
          weights[2] * get(a, corners[2]);
 }
 
-// Square metres per kilogram: how readily a piece of skin gives way in a direction. 0 for what
-// cannot, also because it lies on flesh there.
-float mobility(const SelfContactModel& model, const PointModel& points,
-               const PointSurroundings& around, const VectorArray& position, std::size_t k,
-               const Eigen::Vector3f& direction) {
+// Square metres per kilogram: how readily a piece of skin gives way. 0 for what cannot.
+float mobility(const SelfContactModel& model, const PointModel& points, std::size_t k) {
   if (points.free[k] == 0 || !(points.mass[k] > 0)) return 0;
-  const Eigen::Vector3f flesh = get(around.normal, k);
-  const float height = flesh.dot(get(position, k)) - around.offset[k];
-  if (flesh.dot(direction) < kAgainst && height < kTouching * model.gap_m) return 0;
   return model.area_m2[k] / points.mass[k];
 }
 
 float keptDistance(const SelfContactModel& model, std::uint32_t point, std::uint32_t group) {
   for (const SelfContactModel::RestDistance& r : model.restDistances[point])
-    if (r.group == group) return std::min(r.keep_m, model.gap_m);
-  return model.gap_m;
+    if (r.group == group) return std::min(r.keep_m, model.pointGap_m[point]);
+  return model.pointGap_m[point];
 }
 
 }  // namespace
@@ -78,20 +73,25 @@ SelfContact::SelfContact(const SelfContactModel& model)
       foundCounts_(model.patches.size()),
       hasContact_(model.points),
       pushingMass_(model.points),
-      change_(model.points) {
+      change_(model.points),
+      start_(model.points) {
   contacts_.reserve(found_.size());
   pushed_.reserve(model.points);
 }
 
-SelfContact::Result SelfContact::resolve(const PointModel& points, float reach_m,
-                                         VectorArray& position, VectorArray& velocity,
-                                         PointSurroundings& around, float interval_s) {
+SelfContact::Result SelfContact::separate(const PointModel& points, float reach_m,
+                                          VectorArray& position, VectorArray& velocity,
+                                          float interval_s) {
   find(points, reach_m, position, velocity, interval_s);
-  shareOut(points, around, position);
+  shareOut(points);
   const Result result = limitWays(position);
-  moveApart(points, around, position);
+  if (result.contacts > 0) {
+    start_ = position;
+    moveApart(points, position);
+    keepSmooth(position);
+  }
   removeApproach(points, position, velocity);
-  writeHalfSpaces(position, velocity, interval_s, around);
+  for (Contact& c : contacts_) placePlane(c, position, velocity);
   forget();
   return result;
 }
@@ -146,7 +146,9 @@ void SelfContact::findOfPatch(std::size_t patch, const PointModel& points, float
                           Eigen::Vector3f(touch.normal[0], touch.normal[1], touch.normal[2]),
                           keptDistance(*model_, point, group),
                           std::min(1.f, -touch.facing / kFacingFade),
-                          1};
+                          1,
+                          0,
+                          Eigen::Vector3f::Zero()};
     const float approach_m = -interval_s * contact.approach(velocity);
     if (touch.distance_m - contact.keep_m > reach_m + std::max(0.f, approach_m)) continue;
     found_[patch * kPatch + count++] = contact;
@@ -155,8 +157,7 @@ void SelfContact::findOfPatch(std::size_t patch, const PointModel& points, float
 
 // How two sides share the way apart: by their mobility, as two sheets of skin do that collide,
 // m v conserved. A corner of the triangle gives way as far as the skin around it is in contact.
-void SelfContact::shareOut(const PointModel& points, const PointSurroundings& around,
-                           const VectorArray& position) {
+void SelfContact::shareOut(const PointModel& points) {
   for (const Contact& c : contacts_) hasContact_[c.point] = 1;
   for (const Contact& c : contacts_) {
     for (int i = 0; i < 3; ++i) {
@@ -167,12 +168,12 @@ void SelfContact::shareOut(const PointModel& points, const PointSurroundings& ar
     }
   }
   for (Contact& c : contacts_) {
-    const float own = mobility(*model_, points, around, position, c.point, c.normal);
+    const float own = mobility(*model_, points, c.point);
     float other = 0;
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t k = c.corners[static_cast<std::size_t>(i)];
       const float covered = hasContact_[k] ? 1.f : std::min(1.f, pushingMass_[k] / points.mass[k]);
-      const float corner = mobility(*model_, points, around, position, k, -c.normal);
+      const float corner = mobility(*model_, points, k);
       if (corner > 0) other += c.weights[i] * covered * corner;
     }
     c.share = own > 0 ? own / (own + other) : 0.f;
@@ -186,7 +187,7 @@ SelfContact::Result SelfContact::limitWays(const VectorArray& position) {
     if (!(missing > 0)) continue;
     ++result.contacts;
     result.deepest_m = std::max(result.deepest_m, missing);
-    c.keep_m = std::min(c.keep_m, distance + kMostGaps * model_->gap_m + kMostShare * missing);
+    c.keep_m = std::min(c.keep_m, distance + kMostWay * model_->edge_m[c.point]);
   }
   return result;
 }
@@ -219,19 +220,45 @@ void SelfContact::balance(const PointModel& points, const Wanted& wanted, Vector
   for (const std::uint32_t k : pushed_) apply(k);
 }
 
-void SelfContact::moveApart(const PointModel& points, const PointSurroundings& around,
-                            VectorArray& position) {
-  const auto stayOutOfFlesh = [&](std::size_t k) {
-    const Eigen::Vector3f normal = get(around.normal, k), place = get(position, k);
-    const float depth = around.offset[k] - normal.dot(place);
-    if (depth > 0) put(position, k, place + depth * normal);
-  };
-  for (int pass = 0; pass < kPasses; ++pass) {
+void SelfContact::moveApart(const PointModel& points, VectorArray& position) {
+  for (int pass = 0; pass < kPasses; ++pass)
     balance(
         points, [&](const Contact& c) { return c.keep_m - c.distance(position); }, position);
-    for (const Contact& c : contacts_) stayOutOfFlesh(c.point);
-    for (const std::uint32_t k : pushed_) stayOutOfFlesh(k);
-  }
+}
+
+template <class Visit>
+void SelfContact::forEachMoved(const Visit& visit) const {
+  for (const Contact& c : contacts_) visit(c.point);
+  for (const std::uint32_t k : pushed_) visit(k);
+}
+
+// From the mean of a point's neighbours to the point.
+Eigen::Vector3f SelfContact::standingOut(const VectorArray& position, std::size_t k) const {
+  const std::span<const std::uint32_t> neighbors = model_->neighbors[k];
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const std::uint32_t n : neighbors) sum += get(position, n);
+  return get(position, k) - sum / static_cast<float>(neighbors.size());
+}
+
+// Takes back what would make the surface rougher than kMostRough allows, whatever the contacts
+// want: whole patches may move far, single points may not be torn out of them.
+void SelfContact::keepSmooth(VectorArray& position) {
+  forEachMoved([&](std::size_t k) {
+    const Eigen::Vector3f now = standingOut(position, k);
+    const float most = std::max(standingOut(start_, k).norm(),
+                                model_->roughAtRest_m[k] + kMostRough * model_->edge_m[k]);
+    const float length = now.norm();
+    if (length > most) put(change_, k, (most / length - 1) * now);
+  });
+  forEachMoved([&](std::size_t k) {
+    const Eigen::Vector3f change = get(change_, k), before = get(start_, k);
+    put(change_, k, Eigen::Vector3f::Zero());
+    Eigen::Vector3f way = get(position, k) + change - before;
+    const float most = kMostWay * model_->edge_m[k], length = way.norm();
+    if (!(length > 0)) return;
+    if (length > most) way *= most / length;
+    put(position, k, before + way);
+  });
 }
 
 void SelfContact::removeApproach(const PointModel& points, const VectorArray& position,
@@ -249,23 +276,29 @@ void SelfContact::removeApproach(const PointModel& points, const VectorArray& po
 
 // The half space ends where the two sides meet if nothing else acts on them: it moves with the
 // velocity that they have in common then, and starts from where their shares of the way meet.
+void SelfContact::placePlane(Contact& c, const VectorArray& position,
+                             const VectorArray& velocity) const {
+  const Eigen::Vector3f own = get(velocity, c.point);
+  c.planeVelocity = own + c.share * (blend(velocity, c.corners, c.weights) - own);
+  c.offset_m = c.normal.dot(get(position, c.point)) - c.share * (c.distance(position) - c.keep_m) -
+               (1 - c.strength) * model_->gap_m;
+}
+
 void SelfContact::writeHalfSpaces(const VectorArray& position, const VectorArray& velocity,
                                   float interval_s, PointSurroundings& around) const {
   for (const Contact& c : contacts_) {
     const std::size_t k = c.point;
     const Eigen::Vector3f place = get(position, k), own = get(velocity, k);
-    const Eigen::Vector3f common = own + c.share * (blend(velocity, c.corners, c.weights) - own);
-    const float way_m =
-        c.share * std::max(0.f, c.distance(position) - c.keep_m) + (1 - c.strength) * model_->gap_m;
+    const float way_m = std::max(0.f, c.normal.dot(place) - c.offset_m);
     const Eigen::Vector3f flesh = get(around.normal, k);
     if (flesh.squaredNorm() > 0) {
-      const float then = way_m + interval_s * c.normal.dot(own - common);
+      const float then = way_m + interval_s * c.normal.dot(own - c.planeVelocity);
       const float fleshThen = flesh.dot(place) - around.offset[k] +
                               interval_s * flesh.dot(own - get(around.fleshVelocity, k));
       if (fleshThen < 0 || then > fleshThen - kMoreUrgent * model_->gap_m) continue;
     }
     put(around.normal, k, c.normal);
-    put(around.fleshVelocity, k, common);
+    put(around.fleshVelocity, k, c.planeVelocity);
     around.offset[k] = c.normal.dot(place) - way_m;
   }
 }

@@ -27,6 +27,9 @@ constexpr float kFacingDeep = -0.5f;
 constexpr float kSteepest = 1.2f;
 // … unless it is nearer than this share of the gap, where directions mean little.
 constexpr float kAnySlope = 0.25f;
+// Where a triangle's own normal and the smoothed one differ by more than this cosine the surface is
+// crumpled: its sides are not told apart there.
+constexpr float kCrumpled = 0.5f;
 // Corners' unit normals that cancel each other say nothing about the surface between them.
 constexpr float kLeastNormal = 0.5f;
 
@@ -310,7 +313,7 @@ struct NearestPoint {
 
 // A triangle's corners and their normals, for a closer look.
 struct Corners {
-  V3 a, toB, toC, normal, normalToB, normalToC;
+  V3 a, toB, toC, own, normal, normalToB, normalToC;
 
   HWY_INLINE Corners(const SelfContactModel& m, const VectorArray& position, const SurfaceFrame& f,
                      std::size_t t) {
@@ -318,6 +321,7 @@ struct Corners {
     const auto get = [](const VectorArray& v, std::size_t k)
                          HWY_ATTR { return all(v.x[k], v.y[k], v.z[k]); };
     a = get(position, kA), toB = get(position, kB) - a, toC = get(position, kC) - a;
+    own = scaled(hn::Set(D(), f.inverseLength[t]), get(f.areaNormal, t));
     normal = get(f.normal, kA);
     normalToB = get(f.normal, kB) - normal, normalToC = get(f.normal, kC) - normal;
   }
@@ -350,8 +354,9 @@ struct TouchLanes {
         hn::IfThenElse(hn::Lt(distance, zero), hn::Mul(nearest, hn::Set(d, 1 / deepest)), zero);
     const V limit = hn::MulAdd(depth, hn::Set(d, kFacingDeep - kFacing), hn::Set(d, kFacing));
     facing = hn::Sub(dot(pointNormal, normal), limit);
-    touching =
-        hn::And(hn::And(hasNormal, above), hn::And(hn::Le(depth, one), hn::Lt(facing, zero)));
+    const Mask smooth = hn::Ge(dot(normal, t.own), hn::Set(d, kCrumpled));
+    touching = hn::And(hn::And(hn::And(hasNormal, smooth), above),
+                       hn::And(hn::Le(depth, one), hn::Lt(facing, zero)));
   }
 
   // Calls visit(lane, touch) for the lanes in `allowed`.

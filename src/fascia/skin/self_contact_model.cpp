@@ -19,6 +19,12 @@ using RestDistance = SelfContactModel::RestDistance;
 // Half the circle that a sheet can be bent into without coming nearer than the gap to itself is
 // π/2 gaps long; points twice as far apart on the surface may touch.
 constexpr double kNearGaps = kPi;
+// Where edges are short (faces, hands) the gap is at most this share of them: wider, and neighbours
+// in a crease push each other out of line.
+constexpr float kGapOfEdges = 1.f / 3;
+// Points farther in front of a group than this many of its edges are no matter of this interval,
+// unless they approach: in hands and faces everything is near everything.
+constexpr float kAheadEdges = 0.5f;
 // Patches are as wide as this many edges where their normals differ by one: narrow around limbs.
 constexpr float kTurnEdges = 4;
 // Caps the list of points that are near on the surface, for meshes much finer than the gap.
@@ -109,7 +115,8 @@ class Preparation {
  public:
   Preparation(Triangles triangles, const VectorArray& rest, const std::vector<PointBlock>& blocks,
               float gap_m)
-      : triangles_(triangles), rest_(rest), neighbors_(neighborsOf(triangles, rest.size())) {
+      : triangles_(triangles), rest_(rest) {
+    model_.neighbors = neighborsOf(triangles, rest.size());
     model_.gap_m = gap_m;
     model_.points = rest.size();
     for (const PointBlock& b : blocks)
@@ -137,8 +144,26 @@ class Preparation {
     computeNormals(mesh.positions, mesh.triangles, mesh.normals);
     meanEdge_m_ = meanEdgeLength();
     model_.gap_m = std::min(model_.gap_m, meanEdge_m_);
-    std::erase_if(tested_, [&](std::uint32_t k) { return neighbors_[k].empty(); });
+    std::erase_if(tested_, [&](std::uint32_t k) { return model_.neighbors[k].empty(); });
+    measureSurroundings();
     split(tested_);
+  }
+
+  void measureSurroundings() {
+    SelfContactModel& m = model_;
+    for (FloatArray* a : {&m.edge_m, &m.pointGap_m, &m.roughAtRest_m}) a->assign(m.points, 0.f);
+    for (std::size_t k = 0; k < m.points; ++k) {
+      const std::span<const std::uint32_t> neighbors = m.neighbors[k];
+      if (neighbors.empty()) continue;
+      const auto count = static_cast<float>(neighbors.size());
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      for (const std::uint32_t n : neighbors) {
+        sum += get(rest_, n);
+        m.edge_m[k] += (get(rest_, n) - get(rest_, k)).norm() / count;
+      }
+      m.roughAtRest_m[k] = (get(rest_, k) - sum / count).norm();
+      m.pointGap_m[k] = std::min(m.gap_m, kGapOfEdges * m.edge_m[k]);
+    }
   }
 
   void split(std::span<std::uint32_t> points) {
@@ -208,7 +233,8 @@ class Preparation {
   void addGroup(std::span<const std::uint32_t> members) {
     SelfContactModel& m = model_;
     const std::size_t first = m.corners[0].size(), count = wholeVectors(members.size());
-    m.groups.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), 0});
+    m.groups.push_back(
+        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), 0, 0});
     std::vector<std::uint32_t> points;
     Box box;
     for (std::size_t i = 0; i < count; ++i) {
@@ -220,6 +246,9 @@ class Preparation {
       }
       isRepeated_.push_back(i >= members.size());
     }
+    float edge_m = 0;
+    for (const std::uint32_t k : points) edge_m += m.edge_m[k] / static_cast<float>(points.size());
+    m.groups.back().ahead_m = m.gap_m + kAheadEdges * edge_m;
     std::sort(points.begin(), points.end());
     const auto end = std::unique(points.begin(), points.end());
     groupPoints_.items.insert(groupPoints_.items.end(), points.begin(), end);
@@ -255,7 +284,7 @@ class Preparation {
   }
 
   void findNearPoints() {
-    NearSearch search(neighbors_, rest_);
+    NearSearch search(model_.neighbors, rest_);
     const auto limit_m = static_cast<float>(kNearGaps * model_.gap_m);
     for (std::size_t k = 0; k < model_.points; ++k) {
       search.append(static_cast<std::uint32_t>(k), limit_m, model_.nearPoints.items);
@@ -367,7 +396,7 @@ class Preparation {
   void spreadOverPoints(std::vector<std::vector<RestDistance>>& lists) const {
     const std::vector<std::vector<RestDistance>> before = lists;
     for (std::size_t k = 0; k < lists.size(); ++k) {
-      for (const std::uint32_t n : neighbors_[k])
+      for (const std::uint32_t n : model_.neighbors[k])
         lists[k].insert(lists[k].end(), before[n].begin(), before[n].end());
       reduce(lists[k]);
     }
@@ -375,7 +404,6 @@ class Preparation {
 
   Triangles triangles_;
   const VectorArray& rest_;
-  Lists<std::uint32_t> neighbors_;
   std::vector<std::uint32_t> tested_;  // points
   TriangleMesh mesh_;                  // the rest shape
   float meanEdge_m_ = 0;

@@ -42,6 +42,7 @@ struct SelfContactModel {
     static constexpr std::size_t kCapacity = 80;  // 32 points of a mesh have about 64 triangles
     std::uint32_t first, count;                   // multiples of kLanes
     float deepest_m;                              // largest of depth_m
+    float ahead_m;                                // nothing farther in front is looked at
   };
   // How near a point may come to a group's triangles, where that is less than the gap.
   struct RestDistance {
@@ -53,7 +54,7 @@ struct SelfContactModel {
     std::uint32_t group, lanes;
   };
 
-  float gap_m = 0.002f;  // distance that is kept between two sheets of skin
+  float gap_m = 0.002f;  // distance that is kept between two sheets of skin, at most
   float deepest_m = 0;   // largest of the groups'
 
   std::vector<Patch> patches;  // of all points that are tested
@@ -63,8 +64,12 @@ struct SelfContactModel {
   FloatArray depth_m;                 // per triangle: points deeper below it have not come
                                       // through it, but through the other side of a thin limb
 
-  std::size_t points = 0;  // storage
-  FloatArray area_m2;      // per point
+  std::size_t points = 0;          // storage
+  FloatArray area_m2;              // per point
+  FloatArray edge_m;               // per point: mean length of its edges
+  FloatArray pointGap_m;           // per point: gap_m, or less where the skin is dense
+  FloatArray roughAtRest_m;        // per point: its distance from the mean of its neighbours
+  Lists<std::uint32_t> neighbors;  // per point: those joined to it by an edge
   // The triangles around kLanes points at a time, slot by slot; the number of all triangles where a
   // point has no more.
   Lists<std::int32_t> fans;

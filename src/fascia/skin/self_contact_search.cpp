@@ -108,7 +108,9 @@ bool SurfaceSearch::meet(const MotionBounds& points, std::uint32_t group, const 
   std::copy_n(points.normals.axis, 3, out.axis);
   out.cosineNever = cosineNever(points.normals);
   if (within(other.normals, out.axis, out.cosineNever)) return false;
-  const float range = std::max(query.ahead_m, query.depthScale * model_->groups[group].deepest_m);
+  const SelfContactModel::Group& g = model_->groups[group];
+  out.ahead_m = std::min(query.ahead_m, g.ahead_m);
+  const float range = std::max(out.ahead_m, query.depthScale * g.deepest_m);
   for (int a = 0; a < 3; ++a) {
     out.low[a] =
         points.low[a] + std::min(0.f, (points.slowest[a] - other.fastest[a]) * interval_s_);
@@ -116,7 +118,6 @@ bool SurfaceSearch::meet(const MotionBounds& points, std::uint32_t group, const 
         points.high[a] + std::max(0.f, (points.fastest[a] - other.slowest[a]) * interval_s_);
     if (out.low[a] - range > other.high[a] || out.high[a] + range < other.low[a]) return false;
   }
-  out.ahead_m = query.ahead_m;
   out.interval_s = interval_s_;
   out.depthScale = query.depthScale;
   return true;

@@ -22,6 +22,7 @@
 #include <fascia/skin/point_model.h>
 #include <fascia/skin/quantities.h>
 #include <fascia/skin/self_contact.h>
+#include <fascia/skin/self_contact_creases.h>
 #include <fascia/skin/skin_def.h>
 #include <fascia/skin/tissue.h>
 
@@ -99,6 +100,7 @@ class Skin {
   const Skin* coarse() const { return coarse_.get(); }
   double size_m() const { return size_m_; }  // diagonal of the rest shape's box
   const SelfContactModel* selfContact() const { return selfContact_.get(); }  // may be nullptr
+  const CreaseModel* creases() const { return creases_.get(); }               // may be nullptr
   const FatPressureModel* fatPressure() const { return fatPressure_.get(); }  // may be nullptr
 
   // The inner ends of a grid's strands, in its solids' matter.
@@ -137,6 +139,7 @@ class Skin {
   double defaultStep_s_ = 0, size_m_ = 0;
   std::vector<std::size_t> fixedPoints_;
   std::shared_ptr<const SelfContactModel> selfContact_;
+  std::shared_ptr<const CreaseModel> creases_;
   std::shared_ptr<const FatPressureModel> fatPressure_;
   // A grid's points are carried by solids and joints, a mesh's by its joints' weights.
   TissueAnchors anchors_, carriers_;

@@ -19,6 +19,8 @@ constexpr double kRidingStep_s = 1.0 / 960;
 // A skin point whose anchor jumps farther than this share of the skin's size within one interval
 // has been teleported with the body, not moved.
 constexpr double kJump = 0.2;
+// How much farther than its velocity says skin may come towards other skin within an interval.
+constexpr float kSelfReach = 0.002f;
 // Points that may slide only so far need no wider one, however hard a body is shaken.
 constexpr float kSlidingReach = 0.02f;
 // How long an anchor takes, mostly, to where flesh leads it aside that bulges at a bend or that a
@@ -266,6 +268,7 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   contact_->findYielding(*pose.field, skin_->points(), state.surroundings.anchor);
   if (!skin_->points().slideLimit.empty()) limitSlide(state);
   skin_->topology().complete(state.position);
+  separateSkin(pose, duration_s, state);
   // More than the way that the fastest point goes until the next test.
   const auto size = static_cast<float>(skin_->size_m());
   const float reach =
@@ -277,9 +280,8 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
                                          state.position, state.velocity, state.surroundings)
                                .maxSpeed_m_per_s;
   if (skin_->selfContact())
-    selfContact_.resolve(skin_->points(), 0.002f * static_cast<float>(skin_->size_m()),
-                         state.position, state.velocity, state.surroundings,
-                         static_cast<float>(duration_s));
+    selfContact_.writeHalfSpaces(state.position, state.velocity, static_cast<float>(duration_s),
+                                 state.surroundings);
   skin_->topology().complete(state.position);
 }
 
@@ -287,6 +289,16 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
 void SkinStepper::takeFixed(VectorArray& position) const {
   for (const std::size_t k : skin_->fixedPoints())
     for (const auto axis : kAxes) (position.*axis)[k] = (target_.*axis)[k];
+}
+
+// Skin against itself: before the flesh, which has the last word.
+void SkinStepper::separateSkin(const SkinPose& pose, double duration_s, SkinState& state) {
+  if (skin_->creases())
+    meetInCreases(*skin_->creases(), pose.joints, state.surroundings.anchorVelocity, state.position,
+                  state.velocity);
+  if (skin_->selfContact())
+    selfContact_.separate(skin_->points(), kSelfReach * static_cast<float>(skin_->size_m()),
+                          state.position, state.velocity, static_cast<float>(duration_s));
 }
 
 // Tissue gives way only so far, however hard a body is shaken: points that are farther from their
