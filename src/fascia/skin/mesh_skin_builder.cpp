@@ -29,6 +29,9 @@ constexpr double kSlideOfFat = 0.6, kLeastSlide = 0.0015;
 // How much firmer, and how much softer, the tissue is where the fat is thin or thick.
 constexpr double kFirmest = 6, kSoftest = 0.7;
 constexpr double kLightest = 0.3, kHeaviest = 1.5;
+// Tissue is firm enough that a point's weight stretches its strand by no more than this share of
+// the edges around it: fingers are modelled finely, and would crumple if they hung like a belly.
+constexpr double kMostSag = 0.25;
 // Pieces with a smaller share of the model's size are carried as they are.
 constexpr double kSmallPiece = 0.04;
 
@@ -82,6 +85,19 @@ std::vector<char> borderPoints(const RiggedModel& rig) {
     if (j - i == 1) border[edges[i][0]] = border[edges[i][1]] = 1;
   }
   return border;
+}
+
+// Mean length of the edges around each point; 0 without any.
+std::vector<double> edgesAround(const RiggedModel& rig) {
+  std::vector<double> sum(rig.points_m.size()), count(sum.size());
+  for (const auto& t : rig.triangles)
+    for (std::size_t e = 0; e < 3; ++e) {
+      const std::uint32_t a = t[e], b = t[(e + 1) % 3];
+      const double length = double{(rig.points_m[a] - rig.points_m[b]).norm()};
+      for (const std::uint32_t p : {a, b}) sum[p] += length, count[p] += 1;
+    }
+  for (std::size_t p = 0; p < sum.size(); ++p) sum[p] /= std::max(1.0, count[p]);
+  return sum;
 }
 
 double medianOf(std::vector<float> values) {
@@ -261,6 +277,8 @@ void MeshSkinBuilder::setQuantities() {
     if (covered_[p] && !fixed_[p]) thicknesses.push_back(std::max(gap_[p], 0.f));
   const double usual = std::max(medianOf(std::move(thicknesses)), 1e-4 * skin_.size_m_);
 
+  const std::vector<double> edges = edgesAround(rig_);
+  const double gravity = skin_.settings_.gravity_m_per_s2.norm();
   SkinQuantities& q = skin_.quantities_;
   for (const QuantityInfo& i : quantityInfos())
     q[i.quantity].assign(storage, static_cast<float>(uniformValue(def_, i.quantity)));
@@ -273,6 +291,11 @@ void MeshSkinBuilder::setQuantities() {
     q[SkinQuantity::tissue_stiffness][k] *=
         static_cast<float>(std::clamp(thin, kSoftest, kFirmest));
     q[SkinQuantity::density][k] *= static_cast<float>(std::clamp(1 / thin, kLightest, kHeaviest));
+    if (edges[p] > 0)
+      q[SkinQuantity::tissue_stiffness][k] =
+          std::max(q[SkinQuantity::tissue_stiffness][k],
+                   static_cast<float>(double{q[SkinQuantity::density][k]} * gravity /
+                                      (kMostSag * edges[p])));
     q[SkinQuantity::tissue_rest_length][k] =
         static_cast<float>(def_.tissue.rest_length_m.value_or(0));
   }
