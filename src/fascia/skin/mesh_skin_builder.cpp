@@ -18,6 +18,9 @@ namespace {
 constexpr double kStep_s = 1.0 / 480;
 // A point farther from all flesh than this share of the model's size has none beneath it.
 constexpr double kBare = 0.06;
+// Nor has one whose normal turns farther than acos of this from the flesh's: the inside of a mouth,
+// the sides of fingers that share a joint.
+constexpr double kFacing = 0.25;
 // A joint with a smaller share of a point does not press on it.
 constexpr float kFeltWeight = 0.05f;
 // How far flesh may press a point away from where its joints carry it: so many times the fat that
@@ -189,11 +192,12 @@ void MeshSkinBuilder::measureFat() {
   solid_.resize(count);
   covered_.resize(count);
   const double bare = kBare * rig_.size_m();
+  const std::vector<Vec3> normals = pointNormals(rig_);
   parallelFor(count, [&](std::size_t p) {
     const NearestFlesh nearest = nearestFlesh(base_.posedFlesh, modelPoint(rig_, p), felt_[p]);
     gap_[p] = nearest.distance;
     solid_[p] = nearest.solid;
-    covered_[p] = nearest.distance < bare;
+    covered_[p] = nearest.distance < bare && nearest.normal.dot(normals[p]) > kFacing;
   });
 }
 
