@@ -16,12 +16,6 @@ constexpr double kRounding_m = 1e-5;
 Vec3 at(const VectorArray& a, std::size_t k) {
   return {a.x[k], a.y[k], a.z[k]};
 }
-void put(VectorArray& a, std::size_t k, const Vec3& v) {
-  a.x[k] = static_cast<float>(v.x());
-  a.y[k] = static_cast<float>(v.y());
-  a.z[k] = static_cast<float>(v.z());
-}
-
 // An arm along x, bent about z at its elbow: a tube whose weights go over from the upper arm to the
 // forearm within a radius around the elbow.
 struct Arm {
@@ -29,7 +23,7 @@ struct Arm {
                                           {1, 0, {Mat3::Identity(), Vec3(kElbow_m, 0, 0)}}};
   std::vector<JointCarrier::Point> points;
   CreaseModel model;
-  VectorArray position, velocity, anchorVelocity;
+  VectorArray position;
 
   // toForearm(x): the forearm's share of a point.
   template <class Share>
@@ -45,7 +39,7 @@ struct Arm {
             {points.size(), Vec3(x, kRadius_m * std::cos(angle), kRadius_m * std::sin(angle)), w});
       }
     model = prepareCreases(joints, points, points.size());
-    for (VectorArray* v : {&position, &velocity, &anchorVelocity}) v->resize(points.size());
+    position.resize(points.size());
   }
   Arm()
       : Arm([](double x) { return std::clamp(0.5 + 0.5 * (x - kElbow_m) / kRadius_m, 0.0, 1.0); }) {
@@ -59,7 +53,7 @@ struct Arm {
     std::vector<JointCarrier::Motion> scratch;
     JointCarrier(joints, points).place(bent(angle), scratch, position);
   }
-  void meet(double angle) { meetInCreases(model, bent(angle), anchorVelocity, position, velocity); }
+  void meet(double angle) { meetInCreases(model, bent(angle), position); }
   // How far a member is on its own side of the plane that stands half-way between both limbs.
   double height(const CreaseModel::Member& m, double angle) const {
     const Vec3 normal(std::cos(angle / 2), std::sin(angle / 2), 0);
@@ -104,32 +98,9 @@ TEST(Creases, ChangeNothingAtRestBeyondRounding) {
   Arm arm;
   arm.carry(0);
   const VectorArray before = arm.position;
-  for (std::size_t k = 0; k < arm.points.size(); ++k) put(arm.velocity, k, Vec3(1, 2, 3));
   arm.meet(0);
   for (std::size_t k = 0; k < arm.points.size(); ++k)
     EXPECT_LT((at(arm.position, k) - at(before, k)).norm(), 1e-6) << k;
-}
-
-TEST(Creases, TakeAwayTheApproachAndLetPartingSkinGo) {
-  constexpr double kAngle = 2;
-  const Vec3 normal(std::cos(kAngle / 2), std::sin(kAngle / 2), 0), along = Vec3::UnitZ();
-  for (const double speed : {-0.3, 0.3}) {
-    Arm arm;
-    arm.carry(kAngle);
-    const VectorArray before = arm.position;
-    for (const CreaseModel::Member& m : arm.model.members)
-      put(arm.velocity, m.point, speed * double{m.side} * normal + along);
-    arm.meet(kAngle);
-    std::size_t met = 0;
-    for (const CreaseModel::Member& m : arm.model.members) {
-      if (m.strength < 1 || at(arm.position, m.point) == at(before, m.point)) continue;
-      ++met;
-      const Vec3 v = at(arm.velocity, m.point);
-      EXPECT_NEAR(double{m.side} * normal.dot(v), std::max(0.0, speed), 1e-5);
-      EXPECT_NEAR(v.z(), 1, 1e-6);
-    }
-    EXPECT_GT(met, 10u);
-  }
 }
 
 TEST(Creases, HaveNoPlaneWhereNonePartsTheLimbs) {

@@ -24,10 +24,9 @@ constexpr double kAstray = 0.15;
 // Joints whose two limbs drift apart by more than this many radii (stretching rigs) have no plane,
 // and neither have limbs that are folded flat: the length of the two normals' sum is below this.
 constexpr double kDrift = 0.2, kFolded = 0.3;
-// A point is not moved farther than this many radii in an interval: what comes deeper is often
-// cloth over skin that no plane parts, and would be torn.
+// A point is not moved farther than this many radii: what comes deeper is often cloth over skin
+// that no plane parts, and would be torn.
 constexpr double kDeepest = 0.25;
-constexpr std::size_t kRoots = 8;
 
 Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
   return {a.x[k], a.y[k], a.z[k]};
@@ -121,7 +120,9 @@ class Preparation {
     open(joint, normal, radius_m);
     for (const Shared& s : near)
       if (height(s) > -kAstray * radius_m) addMember(s, height(s), radius_m);
-    close(near);
+    Crease& crease = model_.creases.back();
+    crease.count = static_cast<std::uint32_t>(model_.members.size()) - crease.first;
+    if (crease.count == 0) model_.creases.pop_back();
   }
 
   void open(std::size_t joint, const Vec3& normal, double radius_m) {
@@ -131,8 +132,7 @@ class Preparation {
     model_.creases.push_back({own.skeletonJoint, parent.skeletonJoint, toOwn.point(center(joint)),
                               toOwn.vector(normal), toParent.point(center(joint)),
                               toParent.vector(normal), radius_m,
-                              static_cast<std::uint32_t>(model_.members.size()), 0,
-                              static_cast<std::uint32_t>(model_.roots.size()), 0});
+                              static_cast<std::uint32_t>(model_.members.size()), 0});
   }
 
   void addMember(const Shared& s, double height_m, double radius_m) {
@@ -141,29 +141,6 @@ class Preparation {
     model_.members.push_back(
         {static_cast<std::uint32_t>(s.point->point), s.limb > s.parent ? 1.f : -1.f,
          static_cast<float>(std::min(height_m, 0.0)), static_cast<float>(std::min(1.0, fade))});
-  }
-
-  // Without points that go with the plane nobody can say how it moves.
-  void close(std::vector<Shared>& near) {
-    Crease& crease = model_.creases.back();
-    crease.count = static_cast<std::uint32_t>(model_.members.size()) - crease.first;
-    std::erase_if(near, [&](const Shared& s) {
-      return s.point->point >= elastic_ || s.limb * s.parent < kBlended;
-    });
-    const std::size_t count = std::min(kRoots, near.size());
-    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end(),
-                      [](const Shared& a, const Shared& b) {
-                        const float x = std::abs(a.limb - a.parent),
-                                    y = std::abs(b.limb - b.parent);
-                        return x != y ? x < y : a.point->point < b.point->point;
-                      });
-    for (std::size_t i = 0; i < count; ++i)
-      model_.roots.push_back(static_cast<std::uint32_t>(near[i].point->point));
-    crease.rootCount = static_cast<std::uint32_t>(count);
-    if (crease.count > 0 && count > 0) return;
-    model_.members.resize(crease.first);
-    model_.roots.resize(crease.firstRoot);
-    model_.creases.pop_back();
   }
 
   std::span<const JointCarrier::Joint> joints_;
@@ -192,27 +169,19 @@ CreaseModel prepareCreases(std::span<const JointCarrier::Joint> joints,
 }
 
 void meetInCreases(const CreaseModel& model, std::span<const Transform> joints,
-                   const VectorArray& anchorVelocity, VectorArray& position,
-                   VectorArray& velocity) {
+                   VectorArray& place) {
   for (const Crease& crease : model.creases) {
     Vec3 center, exactNormal;
     if (!placePlane(crease, joints, center, exactNormal)) continue;
     const Eigen::Vector3f normal = exactNormal.cast<float>();
     const auto offset = static_cast<float>(exactNormal.dot(center));
     const auto deepest = static_cast<float>(kDeepest * crease.radius_m);
-    Eigen::Vector3f planeVelocity = Eigen::Vector3f::Zero();
-    for (std::uint32_t i = 0; i < crease.rootCount; ++i)
-      planeVelocity += get(anchorVelocity, model.roots[crease.firstRoot + i]) /
-                       static_cast<float>(crease.rootCount);
     for (std::uint32_t i = crease.first; i < crease.first + crease.count; ++i) {
       const Member& m = model.members[i];
-      const Eigen::Vector3f place = get(position, m.point), inward = m.side * normal;
-      const float missing = m.least_m - m.side * (normal.dot(place) - offset);
-      if (!(missing > 0)) continue;
-      put(position, m.point, place + m.strength * std::min(missing, deepest) * inward);
-      const Eigen::Vector3f v = get(velocity, m.point);
-      const float approach = inward.dot(v - planeVelocity);
-      if (approach < 0) put(velocity, m.point, v - m.strength * approach * inward);
+      const Eigen::Vector3f at = get(place, m.point);
+      const float missing = m.least_m - m.side * (normal.dot(at) - offset);
+      if (missing > 0)
+        put(place, m.point, at + m.strength * m.side * std::min(missing, deepest) * normal);
     }
   }
 }

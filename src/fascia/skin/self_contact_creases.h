@@ -21,7 +21,6 @@ struct CreaseModel {
     Vec3 center_parent, normal_parent;  // the same in the parent's
     double radius_m;                    // how far from the joint both limbs move the skin
     std::uint32_t first, count;         // members
-    std::uint32_t firstRoot, rootCount;
   };
   struct Member {
     std::uint32_t point;  // storage index
@@ -31,16 +30,14 @@ struct CreaseModel {
   };
   std::vector<Crease> creases;
   std::vector<Member> members;
-  std::vector<std::uint32_t> roots;  // points that both limbs move alike: they go with the plane
 };
 
 // `points` tell of the whole skin; members are those whose storage index is below `elastic`.
 CreaseModel prepareCreases(std::span<const JointCarrier::Joint> joints,
                            std::span<const JointCarrier::Point> points, std::size_t elastic);
 
-// Puts every member back on its side, and takes from it the velocity with which it approaches the
-// plane. Where nothing folds nothing changes, up to rounding.
-void meetInCreases(const CreaseModel& model, std::span<const Transform> joints,
-                   const VectorArray& anchorVelocity, VectorArray& position, VectorArray& velocity);
+// Puts every member back on its side: points where joints carry them, which skin is held by. Where
+// nothing folds nothing changes, up to rounding.
+void meetInCreases(const CreaseModel& model, std::span<const Transform> joints, VectorArray& place);
 
 }  // namespace fascia

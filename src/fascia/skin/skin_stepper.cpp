@@ -175,6 +175,7 @@ void SkinStepper::placeAnchors(const SkinPose& pose, VectorArray& anchor) {
   if (!skin_->sense()) return;
   nextCarried_ = anchor;
   skin_->keepVolume(pose, scratch_, anchor);
+  if (skin_->creases()) meetInCreases(*skin_->creases(), pose.joints, anchor);
   contact_->projectAnchors(*pose.field, skin_->points(), anchor);
 }
 
@@ -268,7 +269,10 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   contact_->findYielding(*pose.field, skin_->points(), state.surroundings.anchor);
   if (!skin_->points().slideLimit.empty()) limitSlide(state);
   skin_->topology().complete(state.position);
-  separateSkin(pose, duration_s, state);
+  // Skin against itself comes before the flesh, which has the last word.
+  if (skin_->selfContact())
+    selfContact_.separate(skin_->points(), kSelfReach * static_cast<float>(skin_->size_m()),
+                          state.position, state.velocity, static_cast<float>(duration_s));
   // More than the way that the fastest point goes until the next test.
   const auto size = static_cast<float>(skin_->size_m());
   const float reach =
@@ -289,16 +293,6 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
 void SkinStepper::takeFixed(VectorArray& position) const {
   for (const std::size_t k : skin_->fixedPoints())
     for (const auto axis : kAxes) (position.*axis)[k] = (target_.*axis)[k];
-}
-
-// Skin against itself: before the flesh, which has the last word.
-void SkinStepper::separateSkin(const SkinPose& pose, double duration_s, SkinState& state) {
-  if (skin_->creases())
-    meetInCreases(*skin_->creases(), pose.joints, state.surroundings.anchorVelocity, state.position,
-                  state.velocity);
-  if (skin_->selfContact())
-    selfContact_.separate(skin_->points(), kSelfReach * static_cast<float>(skin_->size_m()),
-                          state.position, state.velocity, static_cast<float>(duration_s));
 }
 
 // Tissue gives way only so far, however hard a body is shaken: points that are farther from their

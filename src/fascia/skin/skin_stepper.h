@@ -36,7 +36,6 @@ class SkinStepper {
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void settle(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void takeFixed(VectorArray& position) const;
-  void separateSkin(const SkinPose& pose, double duration_s, SkinState& state);
   void limitSlide(SkinState& state) const;
   void repair(const SkinPose& pose, SkinState& state, SkinStats& stats);
 
