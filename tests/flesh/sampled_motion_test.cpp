@@ -137,7 +137,7 @@ TEST(BindSampled, SaysHowFastJointsMove) {
   constexpr double kStep_s = 1e-4;
   double fastest = 0;
   for (int frame = 0; frame < 10; ++frame) {
-    // Half way between frames: the motion is smooth over the span that rates are measured in.
+    // Half way between frames the motion is one cubic over the span that rates are measured in.
     const double time = (frame + 0.5) / puppet.motion->rate_hz;
     const PosedSkeleton before = puppet.pose(clip, time - kStep_s), now = puppet.pose(clip, time),
                         after = puppet.pose(clip, time + kStep_s);
@@ -147,7 +147,7 @@ TEST(BindSampled, SaysHowFastJointsMove) {
       const auto at = [&](const PosedSkeleton& p) { return p.joint_world[j].point(arm); };
       const Vec3 velocity = (at(after) - at(before)) / (2 * kStep_s);
       fastest = std::max(fastest, velocity.norm());
-      EXPECT_LT((now.twist_world[j].at(at(now)) - velocity).norm(), 0.01 + 0.01 * velocity.norm())
+      EXPECT_LT((now.twist_world[j].at(at(now)) - velocity).norm(), 0.02 + 0.02 * velocity.norm())
           << kNames[j] << time;
     }
   }

@@ -16,7 +16,7 @@ struct DecompositionOptions {
   int influences = 4;    // 4 or 8 per point
   int iterations = 12;   // of bones against weights
   // Told the share that is done, now and then; what it throws stops the work.
-  std::function<void(double)> progress;
+  std::function<void(double)> progress = {};
 };
 
 // Linear blend skinning that plays back a simulation (Le & Deng 2012): the rig's own bones keep

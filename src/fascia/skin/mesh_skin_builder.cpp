@@ -193,12 +193,18 @@ void MeshSkinBuilder::measureFat() {
   covered_.resize(count);
   const double bare = kBare * rig_.size_m();
   const std::vector<Vec3> normals = pointNormals(rig_);
+  std::vector<double> facing(count);
   parallelFor(count, [&](std::size_t p) {
     const NearestFlesh nearest = nearestFlesh(base_.posedFlesh, modelPoint(rig_, p), felt_[p]);
     gap_[p] = nearest.distance;
     solid_[p] = nearest.solid;
-    covered_[p] = nearest.distance < bare && nearest.normal.dot(normals[p]) > kFacing;
+    facing[p] = nearest.distance < bare ? nearest.normal.dot(normals[p]) : 0;
   });
+  // Some pieces are modelled inside out.
+  std::vector<double> outward(rig_.componentCount);
+  for (std::size_t p = 0; p < count; ++p) outward[rig_.component[p]] += facing[p];
+  for (std::size_t p = 0; p < count; ++p)
+    covered_[p] = std::copysign(1.0, outward[rig_.component[p]]) * facing[p] > kFacing;
 }
 
 // Borders keep their places on the joints. Pieces by rule: what the file says, else small ones and
