@@ -110,7 +110,7 @@ TEST(BodyStepper, KeepsTheEnergyOfAnUndampedPendulum) {
     lowest = std::min(lowest, system->potentialEnergy_J(state.r, state.t_s));
   }
   EXPECT_LT(worst, 1e-6 * swing_J);
-  EXPECT_LT(lowest, start - 0.9 * swing_J);  // it does swing
+  EXPECT_LT(lowest, start - 0.8 * swing_J);  // it does swing
   EXPECT_EQ(stepper.stats().unconverged, 0u);
 }
 

@@ -8,11 +8,11 @@
 namespace fascia {
 namespace {
 
-// Gauss & Legendre's points of order 3 on [0, 1]: exact along a straight way for forces of degree 5
-// in it, and so for both energies of BodyMaterial, of degree 4 and 6.
-const LineRule& meanForceRule() {
-  static const LineRule rule = gaussRule(3);
-  return rule;
+// Where along the way the force counts, and how much. The mean is by Gauss & Legendre's rule of
+// three points: exact along a straight way for forces of degree 5 in it, and so for both energies
+// of BodyMaterial, of degree 4 and 6.
+LineRule forceRule(BodyScheme scheme) {
+  return scheme == BodyScheme::energyConserving ? gaussRule(3) : LineRule{{1.0}, {1.0}};
 }
 
 constexpr std::size_t kBodiesPerTask = 16;
@@ -31,7 +31,7 @@ Eigen::Map<const Eigen::VectorXd> vectorOf(std::span<const double> x) {
 Eigen::Map<Eigen::VectorXd> vectorOf(std::span<double> x) {
   return {x.data(), static_cast<Eigen::Index>(x.size())};
 }
-std::span<const double> spanOf(const Eigen::VectorXd& x) {
+std::span<double> spanOf(Eigen::VectorXd& x) {
   return {x.data(), static_cast<std::size_t>(x.size())};
 }
 
@@ -41,6 +41,7 @@ BodyNewton::BodyNewton(BodySystem& system, const BodyStepperOptions& options)
     : system_(system),
       options_(options),
       conserving_(options.scheme == BodyScheme::energyConserving),
+      rule_(forceRule(options.scheme)),
       constraints_(system.model()),
       work_(system.model().bodyCount()),
       way_(system.size()),
@@ -72,8 +73,10 @@ void BodyNewton::refresh() {
     work.terms.clear();
     if (b < constraints_.termsOfBodies().size()) work.terms = constraints_.termsOfBodies()[b];
     const auto count = static_cast<Eigen::Index>(work.terms.size());
-    work.response.resize(work.residual.size(), count * system_.model().dimension());
-    work.couplings.assign(work.terms.size() * work.terms.size(), Mat3::Zero());
+    const int d = system_.model().dimension();
+    const Eigen::Index columns = paddedColumns(1 + count * d);
+    work.response.resize(work.residual.size(), columns);
+    work.atTerms.resize(count * d, columns);
   }
 }
 
@@ -133,76 +136,74 @@ void BodyNewton::evaluateConstraints(const OdeState& from, double t_s) {
   constraints_.evaluate(0.5 * (from.t_s + t_s), place_, {});
 }
 
-// residual −= elastic force; A is left to factor().
-void BodyNewton::addElastic(BodyId body, Work& work, std::span<const double> from) const {
-  const BodyShape& shape = system_.model().shape(body);
-  const auto q = vectorOf(from), way = vectorOf(system_.model().part(body, std::span(way_)));
-  const auto addForce = [&](double place, double weight) {
-    work.q = q + place * way;
-    work.force.setZero();
-    shape.addElasticForce(spanOf(work.q), {work.force.data(), from.size()});
-    work.residual -= weight * work.force;
-  };
-  if (conserving_) {
-    const LineRule& rule = meanForceRule();
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i) addForce(rule.nodes[i], rule.weights[i]);
-    work.q = q + 0.5 * way;
-  } else {
-    addForce(1, 1);
-  }
+// At q + place Δ.
+void BodyNewton::moveTo(BodyId body, const OdeState& from, double place) {
+  const BodyModel& model = system_.model();
+  work_[body.index()].q = vectorOf(model.part(body, std::span<const double>(from.r))) +
+                          place * vectorOf(model.part(body, std::span<const double>(way_)));
 }
 
 void BodyNewton::linearize(BodyId body, const OdeState& from, double h_s) {
   const BodyModel& model = system_.model();
   Work& work = work_[body.index()];
-  const std::span<const double> q = model.part(body, from.r);
-  const auto way = vectorOf(model.part(body, std::span(way_)));
+  const auto way = vectorOf(model.part(body, std::span<const double>(way_)));
   const auto v = vectorOf(model.part(body, from.v));
   // (v⁺ − v)/h with v⁺ = Δ/h, or 2 Δ/h − v where v̄ is the mean.
   work.residual = (conserving_ ? 2 : 1) / h_s * (way / h_s - v);
   work.residual -= vectorOf(model.part(body, constantForces_));
-  addElastic(body, work, q);
+  for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
+    moveTo(body, from, rule_.nodes[i]);
+    work.force.setZero();
+    model.shape(body).addElasticForce(spanOf(work.q), spanOf(work.force));
+    work.residual -= rule_.weights[i] * work.force;
+  }
   if (system_.damped()) work.residual.noalias() += work.damping * way / h_s;
-  work.sound = work.residual.allFinite() && factor(body, work, h_s);
+  work.sound = work.residual.allFinite() && factor(body, from, h_s);
 }
 
 // A, its factorisation, and what the constraints' points answer to unit forces. Where A is not
 // positive the energy's concave parts are left out: then it is, and the way goes downhill.
-bool BodyNewton::factor(BodyId body, Work& work, double h_s) const {
+bool BodyNewton::factor(BodyId body, const OdeState& from, double h_s) {
   const BodyShape& shape = system_.model().shape(body);
-  const Eigen::Index n = work.matrix.rows();
+  Work& work = work_[body.index()];
   for (const Curvature curvature : {Curvature::exact, Curvature::positive}) {
     work.matrix.setIdentity();
     work.matrix *= (conserving_ ? 2 : 1) / (h_s * h_s);
     if (system_.damped()) work.matrix += work.damping / h_s;
-    shape.addStiffness(spanOf(work.q), conserving_ ? 0.5 : 1, curvature, work.matrix);
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(work.matrix);
-    if (cholesky.info() != Eigen::Success) continue;
-    cholesky.solveInPlace(work.residual);
-    const int d = system_.model().dimension();
-    work.response.setZero();
-    for (std::size_t a = 0; a < work.terms.size(); ++a) {
-      const ConstraintTerm& term = constraints_.terms()[static_cast<std::size_t>(work.terms[a])];
-      for (Eigen::Index j = 0; j < n / d; ++j)
-        for (int row = 0; row < d; ++row)
-          work.response(j * d + row, static_cast<Eigen::Index>(a) * d + row) =
-              constraints_.weights(term)[j];
+    for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
+      moveTo(body, from, rule_.nodes[i]);
+      const double weight = rule_.weights[i] * rule_.nodes[i];  // ∂(q + place Δ)/∂Δ = place
+      shape.addStiffness(spanOf(work.q), weight, curvature, work.matrix);
     }
-    cholesky.solveInPlace(work.response);
-    for (std::size_t a = 0; a < work.terms.size(); ++a) {
-      const ConstraintTerm& term = constraints_.terms()[static_cast<std::size_t>(work.terms[a])];
-      for (std::size_t b = 0; b < work.terms.size(); ++b) {
-        Mat3& coupling = work.couplings[a * work.terms.size() + b];
-        coupling.setZero();
-        for (Eigen::Index j = 0; j < n / d; ++j)
-          coupling.topLeftCorner(d, d) +=
-              constraints_.weights(term)[j] *
-              work.response.block(j * d, static_cast<Eigen::Index>(b) * d, d, d);
-      }
-    }
+    if (!choleskyInPlace(work.matrix)) continue;
+    respond(work);
     return true;
   }
   return false;
+}
+
+void BodyNewton::respond(Work& work) const {
+  const int d = system_.model().dimension();
+  const Eigen::Index shapes = work.residual.size() / d, columns = work.response.cols();
+  work.response.setZero();
+  work.response.col(0) = work.residual;
+  for (std::size_t a = 0; a < work.terms.size(); ++a) {
+    const double* s =
+        constraints_.weights(constraints_.terms()[static_cast<std::size_t>(work.terms[a])]);
+    const Eigen::Index first = 1 + static_cast<Eigen::Index>(a) * d;
+    for (Eigen::Index j = 0; j < shapes; ++j)
+      for (int row = 0; row < d; ++row) work.response(j * d + row, first + row) = s[j];
+  }
+  choleskySolveInPlace(work.matrix, work.response);
+  work.atTerms.setZero();
+  for (std::size_t a = 0; a < work.terms.size(); ++a) {
+    const double* s =
+        constraints_.weights(constraints_.terms()[static_cast<std::size_t>(work.terms[a])]);
+    double* target = work.atTerms.data() + static_cast<Eigen::Index>(a) * d * columns;
+    for (Eigen::Index j = 0; j < shapes; ++j) {
+      addScaledRow(s[j], work.response.data() + j * d * columns, target, d * columns);
+    }
+  }
 }
 
 double BodyNewton::gain(std::size_t softIndex, double h_s) const {
@@ -240,17 +241,18 @@ bool BodyNewton::solveConstraints(double h_s) {
   for (const Work& work : work_) {
     for (std::size_t a = 0; a < work.terms.size(); ++a) {
       const int termA = work.terms[a];
-      const ConstraintTerm& term = terms[static_cast<std::size_t>(termA)];
-      Vec3 moved = Vec3::Zero();  // A⁻¹ residual, at the term's point
-      for (int j = 0; j < term.weightCount; ++j)
-        moved.head(d) += constraints_.weights(term)[j] * work.residual.segment(j * d, d);
-      lambda_[static_cast<std::size_t>(term.constraint)] += constraints_.derivative(termA) * moved;
+      const int i = terms[static_cast<std::size_t>(termA)].constraint;
+      const Eigen::Index row = static_cast<Eigen::Index>(a) * d;
+      const Mat3& derivative = constraints_.derivative(termA);
+      lambda_[static_cast<std::size_t>(i)] +=
+          derivative.leftCols(d) * work.atTerms.block(row, 0, d, 1);
       for (std::size_t b = 0; b < work.terms.size(); ++b) {
-        const int termB = work.terms[b], other = terms[static_cast<std::size_t>(termB)].constraint;
-        if (term.constraint < other) continue;
-        matrix_.add(term.constraint, other,
-                    constraints_.derivative(termA) * work.couplings[a * work.terms.size() + b] *
-                        constraints_.derivative(termB).transpose());
+        const int termB = work.terms[b], j = terms[static_cast<std::size_t>(termB)].constraint;
+        if (i < j) continue;
+        Mat3 coupling = Mat3::Zero();
+        coupling.topLeftCorner(d, d) =
+            work.atTerms.block(row, 1 + static_cast<Eigen::Index>(b) * d, d, d);
+        matrix_.add(i, j, derivative * coupling * constraints_.derivative(termB).transpose());
       }
     }
   }
@@ -265,14 +267,13 @@ void BodyNewton::correct(BodyId body) {
   Work& work = work_[body.index()];
   auto correction = vectorOf(model.part(body, std::span(correction_)));
   const int d = model.dimension();
-  correction = -work.residual;
+  correction = -work.response.col(0);
   for (std::size_t a = 0; a < work.terms.size(); ++a) {
-    const int term = work.terms[a];
-    const auto i =
-        static_cast<std::size_t>(constraints_.terms()[static_cast<std::size_t>(term)].constraint);
-    const Vec3 force = constraints_.derivative(term).transpose() * lambda_[i];
-    for (int row = 0; row < d; ++row)
-      correction += force[row] * work.response.col(static_cast<Eigen::Index>(a) * d + row);
+    const auto term = static_cast<std::size_t>(work.terms[a]);
+    const auto i = static_cast<std::size_t>(constraints_.terms()[term].constraint);
+    const Vec3 force = constraints_.derivative(work.terms[a]).transpose() * lambda_[i];
+    const Eigen::Index first = 1 + static_cast<Eigen::Index>(a) * d;
+    for (int row = 0; row < d; ++row) correction += force[row] * work.response.col(first + row);
   }
   const BodyShape& shape = model.shape(body);
   work.correction = correction.norm() / (shape.size_m() * std::sqrt(shape.mass_kg()));

@@ -2,9 +2,8 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include <fascia/body/body_stepper.h>
+#include <fascia/body/small_dense.h>
 
 namespace fascia {
 
@@ -29,11 +28,14 @@ class BodyNewton {
  private:
   // Everything of one body that an iteration writes.
   struct Work {
-    Eigen::MatrixXd matrix, damping;     // A, and D at the start of the step; n × n
-    Eigen::MatrixXd response;            // A⁻¹ (s ⊗ I), n × dimension for each of its terms
-    Eigen::VectorXd residual, q, force;  // n; residual becomes A⁻¹ residual
-    std::vector<Mat3> couplings;  // (s_a ⊗ I)ᵀ A⁻¹ (s_b ⊗ I) of terms a, b; row by row
-    std::vector<int> terms;       // numbers in constraints_
+    Eigen::MatrixXd matrix, damping;  // A, and D at the start of the step; n × n
+    // What the body answers to its own forces (column 0) and to unit forces at its terms' points
+    // (dimension columns each): A⁻¹ residual, A⁻¹ (s ⊗ I); n rows.
+    RowMatrix response;
+    // The same at its terms' points, (s ⊗ I)ᵀ of it; dimension rows for each term.
+    RowMatrix atTerms;
+    Eigen::VectorXd residual, q, force;  // n
+    std::vector<int> terms;              // numbers in constraints_
     double merit_J = 0, correction = 0;  // part of the merit; |δ| relative to the body's size
     bool sound = true;
   };
@@ -42,8 +44,9 @@ class BodyNewton {
   void guess(const OdeState& from, double h_s, double t_s);
   void evaluateConstraints(const OdeState& from, double t_s);
   void linearize(BodyId body, const OdeState& from, double h_s);
-  void addElastic(BodyId body, Work& work, std::span<const double> from) const;
-  bool factor(BodyId body, Work& work, double h_s) const;
+  void moveTo(BodyId body, const OdeState& from, double place);
+  bool factor(BodyId body, const OdeState& from, double h_s);
+  void respond(Work& work) const;
   bool solveConstraints(double h_s);
   Vec3 wanted(std::size_t constraint, double h_s) const;
   void correct(BodyId body);
@@ -56,6 +59,7 @@ class BodyNewton {
   BodySystem& system_;
   const BodyStepperOptions options_;
   const bool conserving_;
+  const LineRule rule_;  // over the way, of the force
   int version_ = -1;
   std::size_t hardCount_ = 0;
   ConstraintList constraints_;  // those held, then the soft ones
