@@ -3,6 +3,9 @@
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
@@ -26,7 +29,7 @@ btVector3 barInertia() {
 
 // Everything but the bodies: no collisions are asked for.
 struct Surroundings {
-  btDefaultCollisionConfiguration configuration;
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
 };
@@ -109,6 +112,65 @@ double runRigidBodies(int chains, int bars, int iterations, double& gap_m) {
   return cost;
 }
 
+// A bar as a soft body: its corners, all tied to each other by links, in one cluster.
+std::unique_ptr<btSoftBody> makeSoftBar(btSoftBodyWorldInfo& info, const btVector3& center) {
+  btVector3 corners[8];
+  btScalar masses[8];
+  for (int i = 0; i < 8; ++i) {
+    corners[i] =
+        center + btVector3(i & 1 ? kHalf_m : -kHalf_m, i & 2 ? kHalfWidth_m : -kHalfWidth_m,
+                           i & 4 ? kHalfWidth_m : -kHalfWidth_m);
+    masses[i] = kMass_kg / 8;
+  }
+  auto bar = std::make_unique<btSoftBody>(&info, 8, corners, masses);
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < i; ++j) bar->appendLink(i, j);
+  bar->m_cfg.collisions = 0;
+  bar->generateClusters(1);
+  return bar;
+}
+
+// Soft bars whose clusters are tied by linear joints.
+double runSoftBodies(int chains, int bars, double& gap_m) {
+  Surroundings around;
+  btSequentialImpulseConstraintSolver solver;
+  btSoftRigidDynamicsWorld world(&around.dispatcher, &around.broadphase, &solver,
+                                 &around.configuration);
+  const btVector3 gravity(0, -9.81f, 0);
+  world.setGravity(gravity);
+  btSoftBodyWorldInfo& info = world.getWorldInfo();
+  info.m_gravity = gravity, info.air_density = 0;
+  info.m_broadphase = &around.broadphase, info.m_dispatcher = &around.dispatcher;
+  std::vector<std::unique_ptr<btSoftBody>> bodies;
+  for (int c = 0; c < chains; ++c) {
+    for (int i = 0; i < bars; ++i) {
+      const btVector3 center(kHalf_m * static_cast<btScalar>(2 * i + 1), 0,
+                             kGap_m * static_cast<btScalar>(c));
+      bodies.push_back(makeSoftBar(info, center));
+      world.addSoftBody(bodies.back().get(), 0, 0);
+      btSoftBody::LJoint::Specs joint;
+      joint.position = center - btVector3(kHalf_m, 0, 0);
+      if (i == 0)
+        bodies.back()->appendLinearJoint(joint, btSoftBody::Body());
+      else
+        bodies.back()->appendLinearJoint(joint, bodies[bodies.size() - 2].get());
+    }
+  }
+  const double cost = secondsPerSecond(world);
+  gap_m = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i % static_cast<std::size_t>(bars) == 0) continue;
+    btVector3 ends[2] = {btVector3(0, 0, 0), btVector3(0, 0, 0)};
+    for (int corner = 0; corner < 8; ++corner) {
+      if (corner & 1) ends[0] += bodies[i - 1]->m_nodes[corner].m_x / 4;
+      if (!(corner & 1)) ends[1] += bodies[i]->m_nodes[corner].m_x / 4;
+    }
+    gap_m = std::max(gap_m, static_cast<double>(ends[0].distance(ends[1])));
+  }
+  for (const auto& body : bodies) world.removeSoftBody(body.get());
+  return cost;
+}
+
 }  // namespace
 
 void printBulletChains(int chains, int bars) {
@@ -120,6 +182,9 @@ void printBulletChains(int chains, int bars) {
     std::snprintf(name, sizeof name, "Bullet rigid bodies, %d iterations, 60 Hz x 10", iterations);
     print(name, cost, gap_m);
   }
+  double gap_m = 0;
+  const double cost = runSoftBodies(chains, bars, gap_m);
+  print("Bullet soft-body clusters, 60 Hz x 10", cost, gap_m);
 }
 
 }  // namespace fascia

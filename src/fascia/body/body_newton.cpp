@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fascia/base/parallel.h>
+#include <fascia/body/for_each_body.h>
 
 namespace fascia {
 namespace {
@@ -16,14 +16,6 @@ LineRule forceRule(BodyScheme scheme) {
 }
 
 constexpr std::size_t kBodiesPerTask = 16;
-
-template <class Visit>
-void forEachBody(std::size_t count, Visit&& visit) {
-  parallelFor((count + kBodiesPerTask - 1) / kBodiesPerTask, [&](std::size_t task) {
-    const std::size_t last = std::min(count, (task + 1) * kBodiesPerTask);
-    for (std::size_t b = task * kBodiesPerTask; b < last; ++b) visit(BodyId(b));
-  });
-}
 
 Eigen::Map<const Eigen::VectorXd> vectorOf(std::span<const double> x) {
   return {x.data(), static_cast<Eigen::Index>(x.size())};
@@ -88,10 +80,10 @@ BodyNewton::Result BodyNewton::solve(const OdeState& from, double h_s, OdeState&
   while (result.iterations < options_.max_iterations && !result.converged) {
     ++result.iterations;
     evaluateConstraints(from, to.t_s);
-    forEachBody(work_.size(), [&](BodyId body) { linearize(body, from, h_s); });
+    forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { linearize(body, from, h_s); });
     const bool sound = std::ranges::all_of(work_, &Work::sound);
     if (!sound || !solveConstraints(h_s)) return result;
-    forEachBody(work_.size(), [&](BodyId body) { correct(body); });
+    forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { correct(body); });
     applyCorrections(from, h_s, to.t_s);
     double largest = 0;
     for (const Work& work : work_) largest = std::max(largest, work.correction);
@@ -118,7 +110,7 @@ void BodyNewton::guess(const OdeState& from, double h_s, double t_s) {
   for (std::size_t i = 0; i < constraints_.size(); ++i) startValue_[i] = constraints_.rows(i).value;
   if (!system_.damped()) return;
   const BodyModel& model = system_.model();
-  forEachBody(work_.size(), [&](BodyId body) {
+  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) {
     Work& work = work_[body.index()];
     work.damping.setZero();
     model.shape(body).addDampingMatrix(model.part(body, from.r), 1, work.damping);
@@ -316,7 +308,7 @@ double BodyNewton::bodyMerit(BodyId body, const OdeState& from, double h_s, doub
 }
 
 double BodyNewton::merit(const OdeState& from, double h_s, double t_s, double step) {
-  forEachBody(work_.size(),
+  forEachBody(work_.size(), kBodiesPerTask,
               [&](BodyId body) { work_[body.index()].merit_J = bodyMerit(body, from, h_s, step); });
   double sum = 0;
   for (const Work& work : work_) sum += work.merit_J;

@@ -4,22 +4,12 @@
 #include <cmath>
 
 #include <fascia/base/error.h>
-#include <fascia/base/parallel.h>
+#include <fascia/body/for_each_body.h>
 
 namespace fascia {
 namespace {
 
-// Bodies per task: enough work to be worth handing to a thread.
 constexpr std::size_t kBodiesPerTask = 64;
-
-template <class Visit>
-void forEachBody(const BodyModel& model, Visit&& visit) {
-  const std::size_t count = model.bodyCount();
-  parallelFor((count + kBodiesPerTask - 1) / kBodiesPerTask, [&](std::size_t task) {
-    const std::size_t last = std::min(count, (task + 1) * kBodiesPerTask);
-    for (std::size_t b = task * kBodiesPerTask; b < last; ++b) visit(BodyId(b));
-  });
-}
 
 void checkRange(const char* what, double found, double low, double high) {
   if (found >= low && found <= high) return;
@@ -85,6 +75,12 @@ bool BodySystem::holds(ConstraintId id) const {
 void BodySystem::addPointForce(const BodyPoint& point, const Vec3& force_N) {
   if (!model_.contains(point.body)) throw Error("point force: found a point of no body");
   pointForces_.push_back({point, force_N, model_.shape(point.body).pointWeights(point.X_m)});
+  forcesChanged_ = true;
+}
+
+void BodySystem::clearPointForces() {
+  pointForces_.clear();
+  forcesChanged_ = true;
 }
 
 // Gathers the constraints anew after hold() or release().
@@ -120,6 +116,8 @@ std::vector<Redundancy> BodySystem::redundancies(const OdeState& state) {
 }
 
 std::span<const double> BodySystem::constantForces() {
+  if (!forcesChanged_) return constantForces_;
+  forcesChanged_ = false;
   constantForces_.assign(model_.size(), 0.0);
   const int d = model_.dimension();
   for (std::size_t b = 0; b < model_.bodyCount(); ++b) {
@@ -138,7 +136,7 @@ std::span<const double> BodySystem::constantForces() {
 }
 
 void BodySystem::addBodyForces(std::span<const double> q, std::span<double> f) const {
-  forEachBody(model_, [&](BodyId body) {
+  forEachBody(model_.bodyCount(), kBodiesPerTask, [&](BodyId body) {
     model_.shape(body).addElasticForce(model_.part(body, q), model_.part(body, f));
   });
 }
@@ -146,7 +144,7 @@ void BodySystem::addBodyForces(std::span<const double> q, std::span<double> f) c
 void BodySystem::addDampingForces(std::span<const double> q, std::span<const double> v,
                                   std::span<double> f) const {
   if (!damped_) return;
-  forEachBody(model_, [&](BodyId body) {
+  forEachBody(model_.bodyCount(), kBodiesPerTask, [&](BodyId body) {
     const BodyShape& shape = model_.shape(body);
     if (shape.damped())
       shape.addDampingForce(model_.part(body, q), model_.part(body, v), model_.part(body, f));

@@ -46,7 +46,7 @@ class BodySystem final : public SecondOrderSystem {
   bool holds(ConstraintId constraint) const;
   // A force that acts on a point until it is cleared, N. For forces that change every step.
   void addPointForce(const BodyPoint& point, const Vec3& force_N);
-  void clearPointForces() { pointForces_.clear(); }
+  void clearPointForces();
 
   // Rows of the constraints held that follow from others or contradict them, at the given state.
   std::vector<Redundancy> redundancies(const OdeState& state);
@@ -81,7 +81,7 @@ class BodySystem final : public SecondOrderSystem {
   void addBodyForces(std::span<const double> q, std::span<double> f) const;
   void addDampingForces(std::span<const double> q, std::span<const double> v,
                         std::span<double> f) const;
-  std::span<const double> constantForces();  // gravity and point forces
+  std::span<const double> constantForces();  // gravity and point forces, kept until they change
   // f = everything but the forces of the constraints held.
   void evaluateFreeForces(const OdeState& state, std::span<double> f);
   ConstraintSolver& constraints();  // of those held, up to date with hold() and release()
@@ -117,7 +117,7 @@ class BodySystem final : public SecondOrderSystem {
   std::vector<PointForce> pointForces_;
   std::vector<Held> held_;
   int nextConstraint_ = 0, version_ = 0;
-  bool changed_ = false, damped_ = false;
+  bool changed_ = false, forcesChanged_ = true, damped_ = false;
   ConstraintSolver hard_;
   ConstraintList soft_;
   std::vector<Softness> softness_;

@@ -20,8 +20,8 @@ class Attachment final : public Constraint {
   bool hasConstantJacobian() const override { return true; }
   void evaluate(double, std::span<const Vec3> x, std::span<const Vec3>,
                 ConstraintRows& rows) const override {
-    rows = {};
     rows.value = x[0] - x[1];
+    if (rows.jacobian.empty()) return;
     rows.jacobian[0] = Mat3::Identity();
     rows.jacobian[1] = -Mat3::Identity();
   }
@@ -46,11 +46,10 @@ class GuidedPoint final : public Constraint {
   void evaluate(double t_s, std::span<const Vec3> x, std::span<const Vec3>,
                 ConstraintRows& rows) const override {
     const PathPoint n = path_(t_s);
-    rows = {};
     rows.value = axes_ * (x[0] - n.position_m);
     rows.rate_m_per_s = -(axes_ * n.velocity_m_per_s);
     rows.acceleration_m_per_s2 = -(axes_ * n.acceleration_m_per_s2);
-    rows.jacobian[0] = axes_;
+    if (!rows.jacobian.empty()) rows.jacobian[0] = axes_;
   }
 
  private:
@@ -95,13 +94,12 @@ class Rod final : public Constraint {
   bool hasConstantJacobian() const override { return false; }
   void evaluate(double, std::span<const Vec3> x, std::span<const Vec3> v,
                 ConstraintRows& rows) const override {
-    rows = {};
     const bool both = points_.size() == 2;
     const Vec3 d = x[0] - (both ? x[1] : place_m_);
     const Vec3 rate = both ? Vec3(v[0] - v[1]) : v[0];
     rows.value[0] = (d.squaredNorm() - length_m_ * length_m_) / (2 * length_m_);
     rows.acceleration_m_per_s2[0] = rate.squaredNorm() / length_m_;
-    for (Mat3& jacobian : rows.jacobian) jacobian.setZero();
+    if (rows.jacobian.empty()) return;
     rows.jacobian[0].row(0) = d / length_m_;
     if (both) rows.jacobian[1].row(0) = -d / length_m_;
   }

@@ -22,12 +22,13 @@ struct BodyPoint {
 inline constexpr int kMaxConstraintPoints = 4;
 
 // What a constraint c(x₁ … x_n, t) = 0 of n points says at one moment: up to three rows. Only the
-// first rowCount() entries and the first two columns of a plane system are read.
+// first rowCount() entries and the first two columns of a plane system are read. Zeros at first.
 struct ConstraintRows {
   Vec3 value = Vec3::Zero();                  // c, m
   Vec3 rate_m_per_s = Vec3::Zero();           // ∂c/∂t
   Vec3 acceleration_m_per_s2 = Vec3::Zero();  // c̈ without its ∂c/∂x ẍ (Witkin & Welch 1990, eq. 6)
-  Mat3 jacobian[kMaxConstraintPoints];  // ∂c/∂x of each point, row by row of c
+  // ∂c/∂x of each point, row by row of c; empty where nobody asks for it.
+  std::span<Mat3> jacobian;
 };
 
 // A condition on points of bodies. The points are linear in the bodies' coordinates, so a
@@ -43,7 +44,7 @@ class Constraint {
   virtual std::span<const BodyPoint> points() const = 0;  // 1 to kMaxConstraintPoints
   virtual int rowCount(int dimension) const = 0;          // 1 to 3
   virtual bool hasConstantJacobian() const = 0;
-  // x, v: place (m) and velocity (m/s) of each point. Writes all of `rows`.
+  // x, v: place (m) and velocity (m/s) of each point. Writes what is not 0 to `rows`.
   virtual void evaluate(double t_s, std::span<const Vec3> x, std::span<const Vec3> v,
                         ConstraintRows& rows) const = 0;
 

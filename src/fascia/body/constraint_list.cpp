@@ -6,9 +6,10 @@ namespace fascia {
 
 void ConstraintList::clear() {
   constraints_.clear(), rowCounts_.clear(), terms_.clear(), weights_.clear(), rows_.clear();
+  derivatives_.clear();
   firstTerm_.assign(1, 0);
   termsOfBodies_.assign(model_->bodyCount(), {});
-  constantJacobian_ = true;
+  constantJacobian_ = true, knowsJacobian_ = false;
 }
 
 void ConstraintList::add(const Constraint& constraint) {
@@ -25,6 +26,8 @@ void ConstraintList::add(const Constraint& constraint) {
   rowCounts_.push_back(constraint.rowCount(model_->dimension()));
   firstTerm_.push_back(static_cast<int>(terms_.size()));
   rows_.emplace_back();
+  derivatives_.resize(terms_.size(), Mat3::Zero());
+  knowsJacobian_ = false;
   constantJacobian_ = constantJacobian_ && constraint.hasConstantJacobian();
 }
 
@@ -44,46 +47,59 @@ Vec3 ConstraintList::pointValue(const ConstraintTerm& term, std::span<const doub
 
 void ConstraintList::evaluate(double t_s, std::span<const double> q, std::span<const double> v) {
   Vec3 x[kMaxConstraintPoints], velocity[kMaxConstraintPoints];
-  const bool flat = model_->dimension() == 2;
+  const bool wanted = !constantJacobian_ || !knowsJacobian_;
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     const auto first = static_cast<std::size_t>(firstTerm_[i]);
     const std::size_t count = static_cast<std::size_t>(firstTerm_[i + 1]) - first;
     for (std::size_t p = 0; p < count; ++p) {
       x[p] = pointValue(terms_[first + p], q);
-      velocity[p] = v.empty() ? Vec3(0, 0, 0) : pointValue(terms_[first + p], v);
+      // Constant Jacobians leave nothing of c̈ that depends on velocities.
+      velocity[p] =
+          constantJacobian_ || v.empty() ? Vec3(0, 0, 0) : pointValue(terms_[first + p], v);
     }
-    ConstraintRows& rows = rows_[i];
-    constraints_[i]->evaluate(t_s, {x, count}, {velocity, count}, rows);
-    for (int row = rowCounts_[i]; row < 3; ++row) {
-      rows.value[row] = rows.rate_m_per_s[row] = rows.acceleration_m_per_s2[row] = 0;
-      for (std::size_t p = 0; p < count; ++p) rows.jacobian[p].row(row).setZero();
+    rows_[i] = {};
+    if (wanted) {
+      rows_[i].jacobian = std::span(derivatives_).subspan(first, count);
+      std::ranges::fill(rows_[i].jacobian, Mat3::Zero());
     }
-    for (std::size_t p = 0; flat && p < count; ++p) rows.jacobian[p].col(2).setZero();
+    constraints_[i]->evaluate(t_s, {x, count}, {velocity, count}, rows_[i]);
+    clearMissing(i);
   }
+  knowsJacobian_ = true;
 }
 
-const Mat3& ConstraintList::derivative(int term) const {
-  const auto i = static_cast<std::size_t>(terms_[static_cast<std::size_t>(term)].constraint);
-  return rows_[i].jacobian[term - firstTerm_[i]];
+// Rows and columns that there are not: a constraint may write all of them.
+void ConstraintList::clearMissing(std::size_t i) {
+  ConstraintRows& rows = rows_[i];
+  for (int row = rowCounts_[i]; row < 3; ++row) {
+    rows.value[row] = rows.rate_m_per_s[row] = rows.acceleration_m_per_s2[row] = 0;
+    for (Mat3& derivative : rows.jacobian) derivative.row(row).setZero();
+  }
+  if (model_->dimension() == 3) return;
+  for (Mat3& derivative : rows.jacobian) derivative.col(2).setZero();
 }
 
 Vec3 ConstraintList::jacobianTimes(std::size_t i, std::span<const double> v) const {
   Vec3 sum = Vec3::Zero();
   for (int p = firstTerm_[i]; p < firstTerm_[i + 1]; ++p)
-    sum.noalias() +=
-        rows_[i].jacobian[p - firstTerm_[i]] * pointValue(terms_[static_cast<std::size_t>(p)], v);
+    sum.noalias() += derivatives_[p] * pointValue(terms_[static_cast<std::size_t>(p)], v);
   return sum;
 }
 
 void ConstraintList::addTransposed(std::size_t i, const Vec3& lambda, std::span<double> f) const {
+  const int d = model_->dimension();
   for (int p = firstTerm_[i]; p < firstTerm_[i + 1]; ++p) {
     const ConstraintTerm& term = terms_[static_cast<std::size_t>(p)];
-    const Vec3 force = rows_[i].jacobian[p - firstTerm_[i]].transpose() * lambda;
+    const Vec3 force = derivatives_[p].transpose() * lambda;
     const double* s = weights(term);
     double* at = f.data() + term.offset;
-    const int d = model_->dimension();
-    for (int j = 0; j < term.weightCount; ++j)
-      for (int row = 0; row < d; ++row) at[d * j + row] += force[row] * s[j];
+    if (d == 3) {
+      for (int j = 0; j < term.weightCount; ++j)
+        for (int row = 0; row < 3; ++row) at[3 * j + row] += force[row] * s[j];
+    } else {
+      for (int j = 0; j < term.weightCount; ++j)
+        for (int row = 0; row < 2; ++row) at[2 * j + row] += force[row] * s[j];
+    }
   }
 }
 

@@ -32,8 +32,8 @@ class ConstraintList {
   int rowCount(std::size_t i) const { return rowCounts_[i]; }
   const Constraint& constraint(std::size_t i) const { return *constraints_[i]; }
 
-  // Evaluates all at one moment; `v` may be empty for bodies at rest. Rows that a constraint does
-  // not have are 0 from here on.
+  // Evaluates all at one moment; `v` may be empty for bodies at rest. Constant Jacobians are kept
+  // from the first time. Rows that a constraint does not have are 0 from here on.
   void evaluate(double t_s, std::span<const double> q, std::span<const double> v);
   const ConstraintRows& rows(std::size_t i) const { return rows_[i]; }
 
@@ -43,7 +43,7 @@ class ConstraintList {
   // Points by body, for the products J W Jᵀ.
   std::span<const ConstraintTerm> terms() const { return terms_; }
   const std::vector<std::vector<int>>& termsOfBodies() const { return termsOfBodies_; }
-  const Mat3& derivative(int term) const;  // D of a term's constraint and point
+  const Mat3& derivative(int term) const { return derivatives_[term]; }  // D
   const double* weights(const ConstraintTerm& term) const {
     return weights_.data() + term.weightFirst;
   }
@@ -52,6 +52,7 @@ class ConstraintList {
 
  private:
   Vec3 pointValue(const ConstraintTerm& term, std::span<const double> q) const;
+  void clearMissing(std::size_t i);
 
   const BodyModel* model_;
   std::vector<const Constraint*> constraints_;
@@ -60,7 +61,8 @@ class ConstraintList {
   std::vector<double> weights_;
   std::vector<std::vector<int>> termsOfBodies_;
   std::vector<ConstraintRows> rows_;
-  bool constantJacobian_ = true;
+  std::vector<Mat3> derivatives_;  // of each term
+  bool constantJacobian_ = true, knowsJacobian_ = false;
 };
 
 }  // namespace fascia
