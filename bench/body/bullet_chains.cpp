@@ -43,7 +43,7 @@ double secondsPerSecond(World& world) {
 }
 
 void print(const char* name, double cost, double stretch) {
-  std::printf("%-44s %12.4f %12.2f   longest gap %.2g m\n", name, cost, 1 / cost, stretch);
+  std::printf("%-48s %12.4f %12.2f   longest gap %.2g m\n", name, cost, 1 / cost, stretch);
   std::fflush(stdout);
 }
 

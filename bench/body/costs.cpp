@@ -79,7 +79,7 @@ struct RealTimeCase {
 };
 
 // Seconds of processor time for one second of 100 chains of 10 bars that swing.
-double swingCost(const RealTimeCase& c) {
+double swingCost(const RealTimeCase& c, BodyStepperStats& stats) {
   constexpr int kFrames = 60;
   BodyScene scene = makeScene({.bodies = 1000, .chainLength = 10});
   BodyStepper stepper(*scene.system, c.options);
@@ -87,6 +87,7 @@ double swingCost(const RealTimeCase& c) {
   const double begin = cpu_s();
   for (int i = 0; i < kFrames * c.stepsPerFrame; ++i)
     stepper.step(1.0 / (kFrames * c.stepsPerFrame), scene.state);
+  stats = stepper.stats();
   return (cpu_s() - begin) * 60.0 / kFrames;
 }
 
@@ -104,7 +105,7 @@ void printCosts() {
 void printRealTime() {
   std::printf(
       "\n1000 bars, 100 chains of 10 nailed at one end, swinging for a second, one thread\n");
-  std::printf("%-44s %12s %12s\n", "", "s per s", "x real time");
+  std::printf("%-48s %12s %12s\n", "", "s per s", "x real time");
   const RealTimeCase cases[] = {
       {"explicit, 60 Hz x 10", {.scheme = BodyScheme::explicitEuler}, 10},
       {"implicit Euler, one iteration, 60 Hz x 10", {.max_iterations = 1}, 10},
@@ -115,8 +116,11 @@ void printRealTime() {
        10},
   };
   for (const RealTimeCase& c : cases) {
-    const double cost = swingCost(c);
-    std::printf("%-44s %12.4f %12.2f\n", c.name, cost, 1 / cost);
+    BodyStepperStats stats;
+    const double cost = swingCost(c, stats);
+    std::printf("%-48s %12.4f %12.2f   %llu stopped, %llu halved\n", c.name, cost, 1 / cost,
+                static_cast<unsigned long long>(stats.stopped),
+                static_cast<unsigned long long>(stats.halved));
     std::fflush(stdout);
   }
 #ifdef FASCIA_WITH_BULLET

@@ -83,10 +83,12 @@ void BodyStepper::explicitStep(double h_s, const OdeState& from, OdeState& to) {
   const std::span<double> v = to.v;
   system_.evaluateFreeForces(from, v);
   for (std::size_t i = 0; i < v.size(); ++i) v[i] = from.v[i] + h_s * v[i];
-  // c(q + h v⁺, t + h) = c(q, t + h) + h J v⁺ = 0: exact if c is linear, Newton's step if not.
+  // Where the bodies would go by themselves, what is missing there, and the velocities that make up
+  // for it: exact if c is linear, Newton's step if not.
+  for (std::size_t i = 0; i < v.size(); ++i) to.r[i] = from.r[i] + h_s * v[i];
   ConstraintSolver& constraints = system_.constraints();
-  constraints.update(to.t_s, from.r, from.v);
-  constraints.project(
+  constraints.update(to.t_s, to.r, v);
+  constraints.change(
       v, [&](std::size_t i) -> Vec3 { return -constraints.list().rows(i).value / h_s; });
   for (std::size_t i = 0; i < v.size(); ++i) to.r[i] = from.r[i] + h_s * v[i];
 }

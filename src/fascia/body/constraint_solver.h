@@ -32,17 +32,21 @@ class ConstraintSolver {
   // At the last update().
   std::vector<Redundancy> redundancies() const { return redundancies_.describe(list_); }
 
-  // f += Jᵀ λ with the λ that makes J f = b(i) for all constraints i at once. b is a function of
-  // the number of a constraint that returns its three rows. In coordinates with W = I this is a
-  // projection, of accelerations, velocities or places alike.
-  template <class Wanted>
-  void project(std::span<double> f, Wanted&& b) {
-    if (empty()) return;
-    for (std::size_t i = 0; i < list_.size(); ++i) lambda_[i] = b(i) - list_.jacobianTimes(i, f);
+  // f += Jᵀ λ with J W Jᵀ λ = b: changes J f by b(i) for all constraints i at once. b is a function
+  // of the number of a constraint that returns its three rows.
+  template <class Change>
+  void change(std::span<double> f, Change&& b) {
+    for (std::size_t i = 0; i < list_.size(); ++i) lambda_[i] = b(i);
     solve(lambda_);
     for (std::size_t i = 0; i < list_.size(); ++i) list_.addTransposed(i, lambda_[i], f);
   }
-  // λ of the last project(): the forces (N) or impulses (N s) of the constraints' rows.
+  // The same so that J f = b(i) then. In coordinates with W = I this is a projection, of
+  // accelerations, velocities or places alike.
+  template <class Wanted>
+  void project(std::span<double> f, Wanted&& b) {
+    change(f, [&](std::size_t i) -> Vec3 { return b(i) - list_.jacobianTimes(i, f); });
+  }
+  // λ of the last change(): the forces (N) or impulses (N s) of the constraints' rows.
   std::span<const Vec3> lambda() const { return lambda_; }
 
  private:

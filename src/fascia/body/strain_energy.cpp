@@ -56,11 +56,17 @@ double strainEnergyDensity(const BodyMaterial& m, const Mat3& F) {
          m.volume_Pa * growth * growth;
 }
 
+// By columns, which steps of many bodies do most of the time: F (FᵀF − I) in six scalar products.
 Mat3 strainStress(const BodyMaterial& m, const Mat3& F) {
-  const Mat3 cofactor = cofactors(F);
-  const double growth = F.col(0).dot(cofactor.col(0)) - 1;
-  const Mat3 strain = F.transpose() * F - Mat3::Identity();
-  return (4 * m.rigidity_Pa) * (F * strain) + (2 * m.volume_Pa * growth) * cofactor;
+  const Vec3 x = F.col(0), y = F.col(1), z = F.col(2);
+  const Vec3 yz = y.cross(z), zx = z.cross(x), xy = x.cross(y);  // the cofactors
+  const double elastic = 4 * m.rigidity_Pa, volume = 2 * m.volume_Pa * (x.dot(yz) - 1);
+  const double shearXY = x.dot(y), shearYZ = y.dot(z), shearZX = z.dot(x);
+  Mat3 P;
+  P.col(0) = elastic * ((x.squaredNorm() - 1) * x + shearXY * y + shearZX * z) + volume * yz;
+  P.col(1) = elastic * (shearXY * x + (y.squaredNorm() - 1) * y + shearYZ * z) + volume * zx;
+  P.col(2) = elastic * (shearZX * x + shearYZ * y + (z.squaredNorm() - 1) * z) + volume * xy;
+  return P;
 }
 
 Mat9 strainStiffness(const BodyMaterial& m, const Mat3& F, Curvature curvature) {
