@@ -146,7 +146,8 @@ TEST(BodyShape, DampingForceIsTheNegativeDampingMatrixTimesVelocity) {
     Eigen::VectorXd f = zero(*shape);
     shape->addDampingForce(view(q), view(v), view(f));
     Eigen::MatrixXd D = zeroMatrix(*shape);
-    shape->addDampingMatrix(view(q), 1, D);
+    Eigen::VectorXd scratch = zero(*shape);
+    shape->addDampingMatrix(view(q), 1, D, view(scratch));
     EXPECT_LT((f + D * v).norm(), 1e-10 * f.norm()) << basis->name();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(D);
     EXPECT_GT(solver.eigenvalues()[0], 0.49) << basis->name();  // the drag is left

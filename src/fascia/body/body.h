@@ -69,8 +69,9 @@ class BodyShape {
   bool damped() const;
   void addDampingForce(std::span<const double> q, std::span<const double> velocity,
                        std::span<double> force) const;
-  void addDampingMatrix(std::span<const double> q, double factor,
-                        Eigen::Ref<Eigen::MatrixXd> D) const;
+  // D += factor D(q); `scratch` is any room for coordinateCount() numbers.
+  void addDampingMatrix(std::span<const double> q, double factor, Eigen::Ref<Eigen::MatrixXd> D,
+                        std::span<double> scratch) const;
 
  private:
   void factorMass(const BodyDef& def);

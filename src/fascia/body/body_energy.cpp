@@ -131,7 +131,7 @@ void BodyShape::addDampingForce(std::span<const double> q, std::span<const doubl
 }
 
 void BodyShape::addDampingMatrix(std::span<const double> q, double factor,
-                                 Eigen::Ref<Eigen::MatrixXd> D) const {
+                                 Eigen::Ref<Eigen::MatrixXd> D, std::span<double> scratch) const {
   D.diagonal().array() += factor * material_.drag_per_s;
   withDimension(dimension_, [&](auto d) {
     if (material_.relaxation_s > 0) {
@@ -143,8 +143,9 @@ void BodyShape::addDampingMatrix(std::span<const double> q, double factor,
     }
   });
   if (material_.power_damping_s_per_J <= 0) return;
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(coordinateCount());
-  addElasticForce(q, {gradient.data(), q.size()});
+  Eigen::Map<Eigen::VectorXd> gradient(scratch.data(), coordinateCount());
+  gradient.setZero();
+  addElasticForce(q, scratch);
   D += (factor * material_.power_damping_s_per_J) * gradient * gradient.transpose();
 }
 

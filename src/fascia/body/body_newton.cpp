@@ -113,7 +113,8 @@ void BodyNewton::guess(const OdeState& from, double h_s, double t_s) {
   forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) {
     Work& work = work_[body.index()];
     work.damping.setZero();
-    model.shape(body).addDampingMatrix(model.part(body, from.r), 1, work.damping);
+    model.shape(body).addDampingMatrix(model.part(body, from.r), 1, work.damping,
+                                       spanOf(work.force));
   });
 }
 
