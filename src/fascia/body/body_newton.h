@@ -1,0 +1,73 @@
+#pragma once
+
+#include <vector>
+
+#include <fascia/body/body_stepper.h>
+#include <fascia/body/small_dense.h>
+
+namespace fascia {
+
+// One implicit step of a BodySystem by Newton's method. The unknown is the way Δ = q⁺ − q. In every
+// iteration each body has a small dense matrix of its own,
+//     A = inertia + stiffness + damping,   A δ = −residual + Jᵀ λ,
+// and the constraints tie the corrections δ together by
+//     (J A⁻¹ Jᵀ + 1/K) λ = −c + J A⁻¹ residual
+// with a compliance 1/K where a constraint is soft. A changes with the bodies' shapes, so this
+// matrix is factored in every iteration; its pattern and the order of elimination stay.
+class BodyNewton {
+ public:
+  BodyNewton(BodySystem& system, const BodyStepperOptions& options);
+
+  struct Result {
+    bool sound = false, converged = false;
+    int iterations = 0;
+  };
+  // Allocates when the constraints have changed. `to` is sized; its t_s is the end of the step.
+  Result solve(const OdeState& from, double h_s, OdeState& to);
+
+ private:
+  // Everything of one body that an iteration writes.
+  struct Work {
+    Eigen::MatrixXd matrix, damping;  // A, and D at the start of the step; n × n
+    // What the body answers to its own forces (column 0) and to unit forces at its terms' points
+    // (dimension columns each): A⁻¹ residual, A⁻¹ (s ⊗ I); n rows.
+    RowMatrix response;
+    // The same at its terms' points, (s ⊗ I)ᵀ of it; dimension rows for each term.
+    RowMatrix atTerms;
+    Eigen::VectorXd residual, q, force;  // n
+    std::vector<int> terms;              // numbers in constraints_
+    double merit_J = 0, correction = 0;  // part of the merit; |δ| relative to the body's size
+    bool sound = true;
+  };
+
+  void refresh();
+  void guess(const OdeState& from, double h_s, double t_s);
+  void evaluateConstraints(const OdeState& from, double t_s);
+  void linearize(BodyId body, const OdeState& from, double h_s);
+  void moveTo(BodyId body, const OdeState& from, double place);
+  bool factor(BodyId body, const OdeState& from, double h_s);
+  void respond(Work& work) const;
+  bool solveConstraints(double h_s);
+  Vec3 wanted(std::size_t constraint, double h_s) const;
+  void correct(BodyId body);
+  void applyCorrections(const OdeState& from, double h_s, double t_s);
+  double merit(const OdeState& from, double h_s, double t_s, double step);
+  double bodyMerit(BodyId body, const OdeState& from, double h_s, double step);
+  bool isHard(std::size_t constraint) const { return constraint < hardCount_; }
+  double gain(std::size_t softIndex, double h_s) const;
+
+  BodySystem& system_;
+  const BodyStepperOptions options_;
+  const bool conserving_;
+  const LineRule rule_;  // over the way, of the force
+  int version_ = -1;
+  std::size_t hardCount_ = 0;
+  ConstraintList constraints_;  // those held, then the soft ones
+  BlockCholesky matrix_;
+  std::vector<Work> work_;
+  std::vector<double> way_, correction_, place_;  // Δ, δ, where something is evaluated
+  std::span<const double> constantForces_;
+  std::vector<Vec3> lambda_, startValue_, endValue_;  // of all constraints
+};
+
+}  // namespace fascia
