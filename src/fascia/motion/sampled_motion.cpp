@@ -7,9 +7,9 @@
 namespace fascia {
 namespace {
 
-// Where a motion stands still beside a frame, or nearly so beside how it moves at the other side, it
-// has jumped or stopped there: its tangent is at most so many times the shorter way, that it does
-// not swing over.
+// Where a motion stands still beside a frame, or nearly so beside how it moves at the other side,
+// it has jumped or stopped there: its tangent is at most so many times the shorter way, that it
+// does not swing over.
 constexpr float kSteepest = 50;
 
 // The four frames around a time, the middle two of which enclose it, and how far it is from the
