@@ -17,7 +17,7 @@ namespace {
 // anchors.
 constexpr double kStep_s = 1.0 / 480;
 // A point farther from all flesh than this share of the model's size has none beneath it.
-constexpr double kBare = 0.06;
+constexpr double kBare = 0.03;
 // Nor has one whose normal turns farther than acos of this from the flesh's: the inside of a mouth,
 // the sides of fingers that share a joint.
 constexpr double kFacing = 0.25;
