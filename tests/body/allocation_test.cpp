@@ -1,29 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include <fascia/base/parallel.h>
 
 #include "scenes.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Counts what the whole program allocates.
-void* operator new(std::size_t bytes) {
-  ++allocations;
-  if (void* p = std::malloc(bytes > 0 ? bytes : 1)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
+#include "support/count_allocations.h"
 
 namespace fascia {
 namespace {

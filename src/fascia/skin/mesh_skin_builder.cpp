@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 
-#include <fascia/base/parallel.h>
 #include <fascia/skin/grid_skin_builder.h>
 #include <fascia/skin/mesh_topology.h>
 
@@ -16,11 +14,6 @@ namespace {
 // whatever one sees; points that would need shorter ones get added mass and move with their
 // anchors.
 constexpr double kStep_s = 1.0 / 480;
-// A point farther from all flesh than this share of the model's size has none beneath it.
-constexpr double kBare = 0.03;
-// Nor has one whose normal turns farther than acos of this from the flesh's: the inside of a mouth,
-// the sides of fingers that share a joint.
-constexpr double kFacing = 0.25;
 // A joint with a smaller share of a point does not press on it.
 constexpr float kFeltWeight = 0.05f;
 // How far flesh may press a point away from where its joints carry it: so many times the fat that
@@ -29,18 +22,8 @@ constexpr double kYieldOfFat = 1.5, kLeastYield = 0.004;
 // How far a point may slide from its anchor: so much of its fat, and this share of the model's
 // size.
 constexpr double kSlideOfFat = 0.6, kLeastSlide = 0.0015;
-// How much firmer, and how much softer, the tissue is where the fat is thin or thick.
-constexpr double kFirmest = 6, kSoftest = 0.7;
-constexpr double kLightest = 0.3, kHeaviest = 1.5;
-// Tissue is firm enough that a point's weight stretches its strand by no more than this share of
-// the edges around it: fingers are modelled finely, and would crumple if they hung like a belly.
-constexpr double kMostSag = 0.25;
 // Pieces with a smaller share of the model's size are carried as they are.
 constexpr double kSmallPiece = 0.04;
-
-Vec3 modelPoint(const RiggedModel& rig, std::size_t p) {
-  return rig.points_m[p].cast<double>();
-}
 
 // Sorts [first, last) into compact runs of whole blocks: halves along the longest side, in whole
 // blocks, until one is left.
@@ -51,7 +34,7 @@ void sortIntoBlocks(const RiggedModel& rig, std::uint32_t* first, std::uint32_t*
     return;
   }
   Box box;
-  for (const std::uint32_t* p = first; p != last; ++p) box.add(modelPoint(rig, *p));
+  for (const std::uint32_t* p = first; p != last; ++p) box.add(rig.points_m[*p].cast<double>());
   Eigen::Index axis;
   box.size().maxCoeff(&axis);
   const std::size_t blocks = (count + PointBlock::kCapacity - 1) / PointBlock::kCapacity;
@@ -62,15 +45,6 @@ void sortIntoBlocks(const RiggedModel& rig, std::uint32_t* first, std::uint32_t*
   });
   sortIntoBlocks(rig, first, middle);
   sortIntoBlocks(rig, middle, last);
-}
-
-std::vector<Vec3> pointNormals(const RiggedModel& rig) {
-  std::vector<Eigen::Vector3f> normals;
-  computeNormals(rig.points_m, rig.triangles, normals);
-  std::vector<Vec3> out;
-  out.reserve(normals.size());
-  for (const Eigen::Vector3f& n : normals) out.push_back(n.cast<double>());
-  return out;
 }
 
 // Points on edges that only one triangle has: eyes, mouth, cuffs, the hem of an open sheet.
@@ -88,26 +62,6 @@ std::vector<char> borderPoints(const RiggedModel& rig) {
     if (j - i == 1) border[edges[i][0]] = border[edges[i][1]] = 1;
   }
   return border;
-}
-
-// Mean length of the edges around each point; 0 without any.
-std::vector<double> edgesAround(const RiggedModel& rig) {
-  std::vector<double> sum(rig.points_m.size()), count(sum.size());
-  for (const auto& t : rig.triangles)
-    for (std::size_t e = 0; e < 3; ++e) {
-      const std::uint32_t a = t[e], b = t[(e + 1) % 3];
-      const double length = double{(rig.points_m[a] - rig.points_m[b]).norm()};
-      for (const std::uint32_t p : {a, b}) sum[p] += length, count[p] += 1;
-    }
-  for (std::size_t p = 0; p < sum.size(); ++p) sum[p] /= std::max(1.0, count[p]);
-  return sum;
-}
-
-double medianOf(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -180,31 +134,8 @@ void MeshSkinBuilder::findFelt() {
       const std::vector<SolidId>& solids = ofJoint[joint.skeletonJoint];
       felt_[p].insert(felt_[p].end(), solids.begin(), solids.end());
     }
-    if (felt_[p].empty())
-      felt_[p].push_back(nearestFlesh(base_.posedFlesh, modelPoint(rig_, p)).solid);
+    if (felt_[p].empty()) felt_[p].push_back(nearestFlesh(base_.posedFlesh, modelPoint(p)).solid);
   }
-}
-
-// The fat of an imported figure is what lies between its surface and its solids.
-void MeshSkinBuilder::measureFat() {
-  const std::size_t count = rig_.points_m.size();
-  gap_.resize(count);
-  solid_.resize(count);
-  covered_.resize(count);
-  const double bare = kBare * rig_.size_m();
-  const std::vector<Vec3> normals = pointNormals(rig_);
-  std::vector<double> facing(count);
-  parallelFor(count, [&](std::size_t p) {
-    const NearestFlesh nearest = nearestFlesh(base_.posedFlesh, modelPoint(rig_, p), felt_[p]);
-    gap_[p] = nearest.distance;
-    solid_[p] = nearest.solid;
-    facing[p] = nearest.distance < bare ? nearest.normal.dot(normals[p]) : 0;
-  });
-  // Some pieces are modelled inside out.
-  std::vector<double> outward(rig_.componentCount);
-  for (std::size_t p = 0; p < count; ++p) outward[rig_.component[p]] += facing[p];
-  for (std::size_t p = 0; p < count; ++p)
-    covered_[p] = std::copysign(1.0, outward[rig_.component[p]]) * facing[p] > kFacing;
 }
 
 // Borders keep their places on the joints. Pieces by rule: what the file says, else small ones and
@@ -215,7 +146,7 @@ void MeshSkinBuilder::chooseFixed() {
   std::vector<std::size_t> points(rig_.componentCount), covered(rig_.componentCount);
   for (std::size_t p = 0; p < rig_.points_m.size(); ++p) {
     const std::uint32_t c = rig_.component[p];
-    boxes[c].add(modelPoint(rig_, p));
+    boxes[c].add(modelPoint(p));
     ++points[c];
     covered[c] += covered_[p] ? 1u : 0u;
   }
@@ -276,50 +207,6 @@ void MeshSkinBuilder::makeRestShape() {
     skin_.rest_.x[k] = p.x(), skin_.rest_.y[k] = p.y(), skin_.rest_.z[k] = p.z();
   }
   skin_.size_m_ = std::max(1e-6, rig_.size_m());
-}
-
-// Uniform values; where the fat is thin the skin is lighter and sits tighter, where it is thick it
-// weighs and gives more. Then what the file says of single points, regions and brushes.
-void MeshSkinBuilder::setQuantities() {
-  const std::size_t storage = skin_.rest_.size();
-  std::vector<float> thicknesses;
-  for (std::size_t p = 0; p < gap_.size(); ++p)
-    if (covered_[p] && !fixed_[p]) thicknesses.push_back(std::max(gap_[p], 0.f));
-  const double usual = std::max(medianOf(std::move(thicknesses)), 1e-4 * skin_.size_m_);
-
-  const std::vector<double> edges = edgesAround(rig_);
-  const double gravity = skin_.settings_.gravity_m_per_s2.norm();
-  SkinQuantities& q = skin_.quantities_;
-  for (const QuantityInfo& i : quantityInfos())
-    q[i.quantity].assign(storage, static_cast<float>(uniformValue(def_, i.quantity)));
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const std::uint32_t p = order_[k];
-    const double thickness =
-        covered_[p] ? std::clamp<double>(gap_[p], 1e-9, def_.fat.thickness_m) : 1e-9;
-    const double thin = usual / thickness;
-    q[SkinQuantity::fat][k] = covered_[p] ? static_cast<float>(thickness) : 0.f;
-    q[SkinQuantity::tissue_stiffness][k] *=
-        static_cast<float>(std::clamp(thin, kSoftest, kFirmest));
-    q[SkinQuantity::density][k] *= static_cast<float>(std::clamp(1 / thin, kLightest, kHeaviest));
-    if (edges[p] > 0)
-      q[SkinQuantity::tissue_stiffness][k] =
-          std::max(q[SkinQuantity::tissue_stiffness][k],
-                   static_cast<float>(double{q[SkinQuantity::density][k]} * gravity /
-                                      (kMostSag * edges[p])));
-    q[SkinQuantity::tissue_rest_length][k] =
-        static_cast<float>(def_.tissue.rest_length_m.value_or(0));
-  }
-  naturalFat_ = q[SkinQuantity::fat];
-  if (def_.points)
-    for (const QuantityInfo& i : quantityInfos()) {
-      const std::vector<float>& saved = pointValues(*def_.points, i.quantity);
-      if (saved.empty()) continue;
-      for (std::size_t k = 0; k < order_.size(); ++k) q[i.quantity][k] = saved[order_[k]];
-    }
-  std::vector<EditPoint> points;
-  for (std::size_t k = 0; k < order_.size(); ++k)
-    points.push_back({k, 0, 0, covered_[order_[k]] ? solid_[order_[k]] : SolidId()});
-  applySkinEdits(def_, base_, report_, points, false, skin_.rest_, q);
 }
 
 // How far a point's weight stretches its strand: so much higher lies the anchor.
@@ -386,13 +273,13 @@ void MeshSkinBuilder::makeModel() {
 }
 
 void MeshSkinBuilder::carryPoints() {
-  const std::vector<Vec3> normals = pointNormals(rig_);
+  const std::vector<Vec3> normals = pointNormals();
   const SkinQuantities& q = skin_.quantities_;
   std::vector<JointCarrier::Point> all, inner,
       fixed;  // inner: the strands' ends, and what is fixed
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const std::uint32_t p = order_[k];
-    JointCarrier::Point point{k, modelPoint(rig_, p), rig_.weights[p]};
+    JointCarrier::Point point{k, modelPoint(p), rig_.weights[p]};
     // Fat that was put on or taken away moves the skin with it.
     point.rest_world += double{q[SkinQuantity::fat][k] - naturalFat_[k]} * normals[p];
     all.push_back(point);

@@ -39,6 +39,8 @@ class MeshSkinBuilder {
   VectorArray placed(const std::vector<JointCarrier::Point>& points) const;  // the rest elsewhere
   std::vector<TriangleMembrane::Corners> storedTriangles() const;
   TriangleMembrane makeMembrane() const;
+  Vec3 modelPoint(std::size_t p) const;
+  std::vector<Vec3> pointNormals() const;  // of the model's points, at rest
   Vec3 sag(std::size_t k) const;
 
   Skin& skin_;
