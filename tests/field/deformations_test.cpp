@@ -87,6 +87,23 @@ TEST(Bend, KeepsTheLengthOfItsCentreline) {
   EXPECT_NEAR(length_m, 2 * kZHalf_m, 1e-6);
 }
 
+// The flank of a tapered box is a plane: distances to it are exact however far away.
+TEST(Taper, MeasuresDistancesToFlanksFromAfar) {
+  const double half = 0.1, slope = 0.75 * half / 0.2;  // of the flank, dX/dz
+  const Solid solid =
+      makeSolid({"superellipsoid", {half, 0.1, 0.2, 0.1, 0.1}, {{"taper", {0.75}}}});
+  for (const double away : {0.05, 0.2, 0.5}) {
+    const Vec3 foot(half, 0, 0), normal = Vec3(1, 0, -slope).normalized();
+    const Vec3 p = foot + away * normal;
+    if (std::abs(p.z()) > 0.2) continue;
+    const auto x = static_cast<float>(p.x()), y = 0.f, z = static_cast<float>(p.z());
+    float distance, nx, ny, nz;
+    solid.evaluate({&x, &y, &z, 1}, &distance, {&nx, &ny, &nz, 1});
+    EXPECT_NEAR(distance, away, 0.02 * away);
+    EXPECT_GT(Vec3(nx, ny, nz).dot(normal), 0.999);
+  }
+}
+
 TEST(Bend, OfAStoutSolidStopsBeforeItFolds) {
   const Solid solid = makeSolid({"superellipsoid", {0.3, 0.1, 0.1}, {{"bend", {3.0}}}});
   for (const auto& p : solid.tessellate(48).positions) {

@@ -26,8 +26,11 @@ class Deformation {
   // The amount nearest to the wanted one for which the map is one-to-one on `box`.
   virtual double invertibleAmount(std::span<const double> p, double zHalf_m,
                                   const Box& box) const = 0;
-  // What evaluation needs.
-  virtual DeformationKernel kernel(std::span<const double> p, double zHalf_m) const = 0;
+  // Where, for distances at x, the Jacobian is taken: the surface lies within `box`.
+  virtual Vec3 tangentPoint(const Vec3& x, const Box&) const { return x; }
+  // What evaluation needs of the deformation of what lies within `box`.
+  virtual DeformationKernel kernel(std::span<const double> p, double zHalf_m,
+                                   const Box& box) const = 0;
 };
 
 }  // namespace fascia

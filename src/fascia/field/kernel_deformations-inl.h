@@ -31,7 +31,9 @@ HWY_INLINE V rateWithin(D d, V z, const DeformationKernel& k) {
   return hn::IfThenElseZero(hn::Le(hn::Abs(z), hn::Set(d, k.zHalf_m)), hn::Set(d, k.rate_per_m));
 }
 
-// a = 1/scale; b, c = undeformed x, y times slope; d unused.
+// a = 1/scale; b, c = undeformed x, y times slope; d unused. The slope counts as it is on the
+// surface, at most at its reach: a tangent plane is what measures distances, and far away the map
+// is steep.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Undone<V> undoTaper(D d, const DeformationKernel& k, Vector3<V>& p) {
   const V one = hn::Set(d, 1.0f);
@@ -40,7 +42,8 @@ HWY_INLINE Undone<V> undoTaper(D d, const DeformationKernel& k, Vector3<V>& p) {
   p.x = hn::Mul(p.x, inverse);
   p.y = hn::Mul(p.y, inverse);
   const V slope = rateWithin(d, p.z, k);
-  return {inverse, hn::Mul(slope, p.x), hn::Mul(slope, p.y), hn::Zero(d)};
+  return {inverse, hn::Mul(slope, clampTo(d, p.x, k.reach_m)),
+          hn::Mul(slope, clampTo(d, p.y, k.reach_m)), hn::Zero(d)};
 }
 
 template <class V>

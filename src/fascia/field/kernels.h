@@ -31,6 +31,7 @@ struct DeformationKernel {
   Kind kind = Kind::taper;
   float zHalf_m = 1;
   float rate_per_m = 0;  // taper: slope of the scale; twist: rad/m; bend: curvature, rad/m
+  float reach_m = 0;     // taper: |x| and |y| of the undeformed surface are at most this
 };
 
 inline constexpr std::size_t kMaxDeformations = 8;  // larger costs stack in the kernels only

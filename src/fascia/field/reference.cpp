@@ -81,7 +81,7 @@ FieldSample primitive(const PrimitiveKernel& k, const Vec3& p) {
 FieldSample evaluateReference(const Solid& solid, const Vec3& local) {
   const Vec3 x = solid.shapeFromDeformed(local);
   FieldSample sample = primitive(solid.kernel().primitive, x);
-  const Vec3 gradient = solid.deformationJacobian(x).inverse().transpose() * sample.normal;
+  const Vec3 gradient = solid.distanceJacobian(x).inverse().transpose() * sample.normal;
   const double length = gradient.norm();
   return {sample.distance_m / length, gradient / length};
 }

@@ -149,10 +149,12 @@ void Solid::refresh() {
   for (const Step& step : layout_->steps) {
     effective_[step.first] = step.type->invertibleAmount(stepParameters(step), zHalf_m, bounds_);
     const auto parameters = stepParameters(step);
-    bounds_ = step.type->bounds(parameters, zHalf_m, bounds_);
+    const Box undeformed = bounds_;
+    bounds_ = step.type->bounds(parameters, zHalf_m, undeformed);
     // The identity is left out: it costs nothing then, and no kernel divides by its amount.
     if (effective_[step.first] != 0) {
-      kernel_.deformations[kernel_.deformationCount++] = step.type->kernel(parameters, zHalf_m);
+      kernel_.deformations[kernel_.deformationCount++] =
+          step.type->kernel(parameters, zHalf_m, undeformed);
     }
   }
   refreshOutline(before);
@@ -210,6 +212,20 @@ Mat3 Solid::deformationJacobian(const Vec3& x) const {
   for (const Step& step : layout_->steps) {
     jacobian = step.type->jacobian(stepParameters(step), halfExtents_m_.z(), y) * jacobian;
     y = step.type->forward(stepParameters(step), halfExtents_m_.z(), y);
+  }
+  return jacobian;
+}
+
+Mat3 Solid::distanceJacobian(const Vec3& x) const {
+  Mat3 jacobian = Mat3::Identity();
+  Vec3 y = x;
+  Box box{-halfExtents_m_, halfExtents_m_};
+  for (const Step& step : layout_->steps) {
+    const auto parameters = stepParameters(step);
+    const double zHalf_m = halfExtents_m_.z();
+    jacobian = step.type->jacobian(parameters, zHalf_m, step.type->tangentPoint(y, box)) * jacobian;
+    y = step.type->forward(parameters, zHalf_m, y);
+    box = step.type->bounds(parameters, zHalf_m, box);
   }
   return jacobian;
 }

@@ -80,6 +80,8 @@ class Solid {
   Vec3 deformedFromShape(const Vec3& x) const;    // all the deformations, in order
   Vec3 shapeFromDeformed(const Vec3& x) const;    // the exact inverse
   Mat3 deformationJacobian(const Vec3& x) const;  // of deformedFromShape
+  // The same for the distance at x: where deformations are steep off the surface, as on it.
+  Mat3 distanceJacobian(const Vec3& x) const;
 
   const SolidKernel& kernel() const { return kernel_; }
 

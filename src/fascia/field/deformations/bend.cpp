@@ -75,7 +75,7 @@ class BendDeformation final : public Deformation {
     const double amount = std::clamp(p[0], -limit, limit);
     return std::abs(amount) < 1e-6 ? 0 : amount;  // 1e-6 rad is below the resolution of float
   }
-  DeformationKernel kernel(std::span<const double> p, double zHalf_m) const override {
+  DeformationKernel kernel(std::span<const double> p, double zHalf_m, const Box&) const override {
     return {DeformationKernel::Kind::bend, static_cast<float>(zHalf_m),
             static_cast<float>(p[0] / (2 * zHalf_m))};
   }

@@ -44,12 +44,21 @@ class TaperDeformation final : public Deformation {
   double invertibleAmount(std::span<const double> p, double, const Box&) const override {
     return p[0];
   }
-  DeformationKernel kernel(std::span<const double> p, double zHalf_m) const override {
+  // Far away the map is steep, its tangent plane is not.
+  Vec3 tangentPoint(const Vec3& x, const Box& box) const override {
+    const double reach_m = reach(box);
+    return {std::clamp(x.x(), -reach_m, reach_m), std::clamp(x.y(), -reach_m, reach_m), x.z()};
+  }
+  DeformationKernel kernel(std::span<const double> p, double zHalf_m,
+                           const Box& box) const override {
     return {DeformationKernel::Kind::taper, static_cast<float>(zHalf_m),
-            static_cast<float>(p[0] / zHalf_m)};
+            static_cast<float>(p[0] / zHalf_m), static_cast<float>(reach(box))};
   }
 
  private:
+  static double reach(const Box& box) {
+    return std::max({-box.low.x(), box.high.x(), -box.low.y(), box.high.y()});
+  }
   static double scale(std::span<const double> p, double zHalf_m, double z) {
     return 1 + p[0] * std::clamp(z / zHalf_m, -1.0, 1.0);
   }

@@ -39,7 +39,7 @@ class TwistDeformation final : public Deformation {
   double invertibleAmount(std::span<const double> p, double, const Box&) const override {
     return p[0];
   }
-  DeformationKernel kernel(std::span<const double> p, double zHalf_m) const override {
+  DeformationKernel kernel(std::span<const double> p, double zHalf_m, const Box&) const override {
     return {DeformationKernel::Kind::twist, static_cast<float>(zHalf_m),
             static_cast<float>(p[0] / (2 * zHalf_m))};
   }
