@@ -101,6 +101,16 @@ class FeltContact::ChunkContact {
     for (const Group& g : groups_)
       if (ask(g, which, bound)) each(g);
   }
+  // The same for pairs that may be within their limits, and remembers what was found of them.
+  template <class Each>
+  void visitNear(Pairs which, Memory& memory, const FloatArray& yield, bool lowerLimits,
+                 FloatArray& bounds, const Each& each) {
+    bound(which, memory, yield, lowerLimits, bounds);
+    visit(which, bounds, [&](const Group& g) {
+      rememberPairs(memory.solids[g.solid.index()].frame, batch_, of(g, memory, yield));
+      each(g);
+    });
+  }
   static FeltMemory of(const Group& g, Memory& memory, const FloatArray& yield) {
     const std::size_t p = g.first;
     return {{memory.place.x.data() + p, memory.place.y.data() + p, memory.place.z.data() + p},
@@ -261,10 +271,7 @@ void FeltContact::projectAnchors(const Field& field, const PointModel& points,
     ChunkContact chunk(*sense_, run, field);
     using Pairs = ChunkContact::Pairs;
     chunk.load(anchor, points, 0);
-    chunk.bound(Pairs::yielding, anchors_, noYield_, false, bound_);
-    chunk.visit(Pairs::yielding, bound_, [&](const Group& g) {
-      rememberPairs(anchors_.solids[g.solid.index()].frame, chunk.batch(),
-                    ChunkContact::of(g, anchors_, noYield_));
+    chunk.visitNear(Pairs::yielding, anchors_, noYield_, false, bound_, [&](const Group& g) {
       chunk.yieldGently(g, yield_, bound_);
       chunk.absorb(g, false);
     });
@@ -283,12 +290,8 @@ void FeltContact::findYielding(const Field& field, const PointModel& points,
     ChunkContact chunk(*sense_, sense_->chunks[c], field);
     using Pairs = ChunkContact::Pairs;
     chunk.load(anchor, points, 0);
-    chunk.bound(Pairs::yielding, anchors_, noYield_, false, bound_);
-    chunk.visit(Pairs::yielding, bound_, [&](const Group& g) {
-      rememberPairs(anchors_.solids[g.solid.index()].frame, chunk.batch(),
-                    ChunkContact::of(g, anchors_, noYield_));
-      chunk.measureDepths(g, yield_);
-    });
+    chunk.visitNear(Pairs::yielding, anchors_, noYield_, false, bound_,
+                    [&](const Group& g) { chunk.measureDepths(g, yield_); });
   });
 }
 
@@ -301,10 +304,7 @@ FeltContact::Result FeltContact::project(const Field& field, const PointModel& p
     ChunkContact chunk(*sense_, run, field);
     using Pairs = ChunkContact::Pairs;
     chunk.load(position, points, reach_m);
-    chunk.bound(Pairs::all, points_, yield_, true, bound_);
-    chunk.visit(Pairs::all, bound_, [&](const Group& g) {
-      rememberPairs(points_.solids[g.solid.index()].frame, chunk.batch(),
-                    ChunkContact::of(g, points_, yield_));
+    chunk.visitNear(Pairs::all, points_, yield_, true, bound_, [&](const Group& g) {
       chunk.widen(g, yield_);
       chunk.absorb(g, false);
     });
@@ -315,13 +315,7 @@ FeltContact::Result FeltContact::project(const Field& field, const PointModel& p
     results_[c].maxSpeed_m_per_s = finishContact(block, true, reach_m, restitution, points,
                                                  chunk.findings(), position, velocity, around);
   });
-  Result total;
-  for (const Result& r : results_) {
-    total.maxCorrection_m = std::max(total.maxCorrection_m, r.maxCorrection_m);
-    total.maxSpeed_m_per_s = std::max(total.maxSpeed_m_per_s, r.maxSpeed_m_per_s);
-  }
-  total.maxSpeed_m_per_s = std::sqrt(total.maxSpeed_m_per_s);
-  return total;
+  return largest(results_);
 }
 
 float FeltContact::deepest(const Field& field, const PointModel& points,

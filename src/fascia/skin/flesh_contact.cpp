@@ -155,14 +155,7 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
                                                    found, position, velocity, around);
     }
   });
-
-  Result total;
-  for (const Result& r : results_) {
-    total.maxCorrection_m = std::max(total.maxCorrection_m, r.maxCorrection_m);
-    total.maxSpeed_m_per_s = std::max(total.maxSpeed_m_per_s, r.maxSpeed_m_per_s);
-  }
-  total.maxSpeed_m_per_s = std::sqrt(total.maxSpeed_m_per_s);
-  return total;
+  return largest(results_);
 }
 
 // How much nearer a block and a solid can have come: the difference of their points' ways at the

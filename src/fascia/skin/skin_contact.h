@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <span>
 
 #include <fascia/base/aligned.h>
 #include <fascia/field/field.h>
@@ -46,6 +49,17 @@ class SkinContact {
   static constexpr int kPasses = 16;  // more than creases of three solids need
   // A point that was pushed farther than this may have been pushed into another solid.
   static constexpr float kRetest_m = 1e-5f;
+
+  // Of the parts' results, whose speeds are squared.
+  static Result largest(std::span<const Result> parts) {
+    Result all;
+    for (const Result& r : parts) {
+      all.maxCorrection_m = std::max(all.maxCorrection_m, r.maxCorrection_m);
+      all.maxSpeed_m_per_s = std::max(all.maxSpeed_m_per_s, r.maxSpeed_m_per_s);
+    }
+    all.maxSpeed_m_per_s = std::sqrt(all.maxSpeed_m_per_s);
+    return all;
+  }
 };
 
 // The kind that suits the skin.
