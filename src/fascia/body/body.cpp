@@ -119,9 +119,13 @@ void BodyShape::prepareEnergy(const BodyDef& def) {
 
 Eigen::VectorXd BodyShape::pointWeights(const Vec3& X) const {
   Eigen::VectorXd s(shapeCount_);
+  pointWeights(X, s);
+  return s;
+}
+
+void BodyShape::pointWeights(const Vec3& X, Eigen::Ref<Eigen::VectorXd> s) const {
   basis_->values(X, s);
   massRoot_.triangularView<Eigen::Lower>().solveInPlace(s);
-  return s;
 }
 
 Eigen::MatrixXd BodyShape::shapeMatrix(std::span<const double> q) const {

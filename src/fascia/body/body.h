@@ -42,6 +42,7 @@ class BodyShape {
 
   // s(X): k weights, so that x = Σ_j q.col(j) s_j.
   Eigen::VectorXd pointWeights(const Vec3& X) const;
+  void pointWeights(const Vec3& X, Eigen::Ref<Eigen::VectorXd> s) const;  // the same into `s`
   // Σ m s: the weights of the momentum, Σ_j q̇.col(j) momentumWeights_j = ∫ ẋ dm.
   const Eigen::VectorXd& momentumWeights() const { return momentumWeights_; }
 
