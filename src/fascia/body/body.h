@@ -48,6 +48,7 @@ class BodyShape {
 
   // The paper's R, dimension × k, and back.
   Eigen::MatrixXd shapeMatrix(std::span<const double> q) const;
+  void writeShapeMatrix(std::span<const double> q, Eigen::Ref<Eigen::MatrixXd> R) const;
   void setShapeMatrix(const Eigen::MatrixXd& R, std::span<double> q) const;
   // The undeformed body moved rigidly.
   void setRest(const Transform& place, std::span<double> q) const;
