@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fascia/base/parallel.h>
+#include <fascia/body/body_field.h>
 
 #include "scenes.h"
 #include "support/count_allocations.h"
@@ -27,6 +28,29 @@ TEST(BodyStepper, AllocatesOnlyWhenConstraintsChange) {
                           system->model().point(state.r, {BodyId(3), test::linkEnd(1)})));
     stepper.step(1e-3, state);
     EXPECT_GT(allocations - before, 0);
+  }
+}
+
+TEST(BodyField, AllocatesNothingAfterConstruction) {
+  Diagnostics diagnostics;
+  const Solid sphere({"sphere", {0.05}, {}}, "", diagnostics);
+  for (const BasisPtr& basis :
+       {makeAffineBasis(3), makePolynomialBasis(3, 4, test::boxOf(test::kBarSize_m))}) {
+    BodyModel model;
+    model.add(test::makeBar(basis));
+    const OdeState state = model.restState();
+    BodyField field(model, std::vector<BodySurfacePtr>{makeSolidSurface(sphere, 12)});
+    const long before = allocations;
+    field.update(state.r, state.v);
+    for (const float x : {0.02f, 5.0f}) {
+      const float y = 0.01f, z = 0;
+      Eigen::Vector3f n;
+      float d = 0;
+      field.evaluate(SolidId(0), {&x, &y, &z, 1}, &d, {&n.x(), &n.y(), &n.z(), 1});
+      field.velocity(SolidId(0), {&x, &y, &z, 1}, {&n.x(), &n.y(), &n.z(), 1});
+      field.materialFromWorld(SolidId(0), Vec3(x, y, z));
+    }
+    EXPECT_EQ(allocations - before, 0) << basis->name();
   }
 }
 

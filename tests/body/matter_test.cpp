@@ -111,5 +111,33 @@ TEST(Matter, RefusesWhatHasNoMass) {
   EXPECT_THROW(meshMatter(inside, 1, 0.1, MatterDetail::of(1)), Error);
 }
 
+TEST(Matter, OutlinesMassIsExactAndTheirEnergyPointsLieInside) {
+  // An L: the square [0, 2]² without [1, 2]²; its integrals are differences of the squares'.
+  const std::vector<Vec2> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  const auto powers = [](double low, double high, int n) {
+    return (std::pow(high, n + 1) - std::pow(low, n + 1)) / (n + 1);
+  };
+  for (const auto& outline : {corners, std::vector<Vec2>(corners.rbegin(), corners.rend())}) {
+    const Matter matter = outlineMatter(outline, 3, {6, 4});
+    for (int i = 0; i <= 6; ++i) {
+      for (int j = 0; i + j <= 6; ++j) {
+        const double exact = powers(0, 2, i) * powers(0, 2, j) - powers(1, 2, i) * powers(1, 2, j);
+        EXPECT_NEAR(moment(matter.mass, {i, j, 0}), 3 * exact, 1e-12 * exact);
+        if (i + j <= 4) {
+          EXPECT_NEAR(moment(matter.volume, {i, j, 0}), exact, 1e-9 * exact);
+        }
+      }
+    }
+    for (std::size_t i = 0; i < matter.volume.size(); ++i) {
+      const Vec3& X = matter.volume.points_m[i];
+      EXPECT_GT(matter.volume.weights[i], 0);
+      EXPECT_TRUE(X.minCoeff() >= 0 && X.maxCoeff() < 2 && std::min(X.x(), X.y()) < 1);
+    }
+    EXPECT_LE(matter.volume.size(), 15u);  // as many as monomials up to degree 4
+  }
+  EXPECT_THROW(outlineMatter(corners, 0, {2, 0}), Error);
+  EXPECT_THROW(outlineMatter(std::span(corners).first(2), 1, {2, 0}), Error);
+}
+
 }  // namespace
 }  // namespace fascia

@@ -28,7 +28,7 @@ FittedSolid sphere(const Vec3& centre, double radius_m) {
 
 TEST(Coverage, CountsTheSkinThatHasFleshBeneath) {
   const RiggedModel model = ball();
-  const BodySurface surface(model, {});
+  const RestSurface surface(model, {});
   FleshFit fit;
   fit.joints.resize(2);
   // Half a ball of flesh: the upper joint's skin lies over it, the lower one's mostly does not.
@@ -44,14 +44,14 @@ TEST(Coverage, CountsTheSkinThatHasFleshBeneath) {
 
 TEST(Containment, MeasuresHowFarASolidComesOut) {
   const RiggedModel model = ball();
-  const BodySurface surface(model, {});
+  const RestSurface surface(model, {});
   EXPECT_EQ(deepestOutside_m(surface, sphere(Vec3(0.1, 0, 0), 0.35)), 0);
   EXPECT_NEAR(deepestOutside_m(surface, sphere(Vec3(0.2, 0, 0), 0.35)), 0.05, 0.006);
 }
 
 TEST(Containment, ShrinksWhatIsTooLargeToTheMargin) {
   const RiggedModel model = ball();
-  const BodySurface surface(model, {});
+  const RestSurface surface(model, {});
   FittedSolid solid = sphere(Vec3(0.2, 0, 0), 0.35);
   ASSERT_TRUE(shrinkInside(surface, nullptr, 0.01, solid));
   EXPECT_EQ(deepestOutside_m(surface, solid), 0);

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <fascia/base/parallel.h>
-#include <fascia/fitting/body_surface.h>
 #include <fascia/fitting/fit_flesh.h>
+#include <fascia/fitting/rest_surface.h>
 #include <fascia/skeleton/skeleton.h>
 
 #include "fitting/rigs.h"
@@ -196,11 +196,11 @@ TEST(FitFlesh, LeavesAnOpenSheetEmpty) {
   EXPECT_EQ(fit.coverage, 0);
 }
 
-TEST(BodySurface, MeasuresTheRadiusOfABall) {
+TEST(RestSurface, MeasuresTheRadiusOfABall) {
   RiggedModel model;
   addJoint(model, "root", -1, Vec3::Zero());
   addEllipsoid(model, Vec3::Zero(), Vec3::Constant(0.5), [](const Vec3&) { return onlyJoint(0); });
-  const BodySurface surface(model, {});
+  const RestSurface surface(model, {});
   EXPECT_NEAR(surface.area_m2(), kPi, 0.05);
   double area_m2 = 0;
   for (const SurfaceSample& s : surface.samples()) {

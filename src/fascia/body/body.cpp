@@ -119,14 +119,28 @@ void BodyShape::prepareEnergy(const BodyDef& def) {
 
 Eigen::VectorXd BodyShape::pointWeights(const Vec3& X) const {
   Eigen::VectorXd s(shapeCount_);
-  basis_->values(X, s);
-  massRoot_.triangularView<Eigen::Lower>().solveInPlace(s);
+  pointWeights(X, s);
   return s;
 }
 
+void BodyShape::pointWeights(const Vec3& X, Eigen::Ref<Eigen::VectorXd> s) const {
+  basis_->values(X, s);
+  massRoot_.triangularView<Eigen::Lower>().solveInPlace(s);
+}
+
 Eigen::MatrixXd BodyShape::shapeMatrix(std::span<const double> q) const {
-  const Eigen::Map<const Eigen::MatrixXd> Q(q.data(), dimension_, shapeCount_);
-  return massRoot_.transpose().triangularView<Eigen::Upper>().solve(Q.transpose()).transpose();
+  Eigen::MatrixXd R(dimension_, shapeCount_);
+  writeShapeMatrix(q, R);
+  return R;
+}
+
+void BodyShape::writeShapeMatrix(std::span<const double> q, Eigen::Ref<Eigen::MatrixXd> R) const {
+  // R L = q from the last column on; Eigen's own solver may allocate.
+  R = Eigen::Map<const Eigen::MatrixXd>(q.data(), dimension_, shapeCount_);
+  for (Eigen::Index j = shapeCount_; j-- > 0;) {
+    for (Eigen::Index i = j + 1; i < shapeCount_; ++i) R.col(j) -= massRoot_(i, j) * R.col(i);
+    R.col(j) /= massRoot_(j, j);
+  }
 }
 
 void BodyShape::setShapeMatrix(const Eigen::MatrixXd& R, std::span<double> q) const {

@@ -42,11 +42,13 @@ class BodyShape {
 
   // s(X): k weights, so that x = Σ_j q.col(j) s_j.
   Eigen::VectorXd pointWeights(const Vec3& X) const;
+  void pointWeights(const Vec3& X, Eigen::Ref<Eigen::VectorXd> s) const;  // the same into `s`
   // Σ m s: the weights of the momentum, Σ_j q̇.col(j) momentumWeights_j = ∫ ẋ dm.
   const Eigen::VectorXd& momentumWeights() const { return momentumWeights_; }
 
   // The paper's R, dimension × k, and back.
   Eigen::MatrixXd shapeMatrix(std::span<const double> q) const;
+  void writeShapeMatrix(std::span<const double> q, Eigen::Ref<Eigen::MatrixXd> R) const;
   void setShapeMatrix(const Eigen::MatrixXd& R, std::span<double> q) const;
   // The undeformed body moved rigidly.
   void setRest(const Transform& place, std::span<double> q) const;

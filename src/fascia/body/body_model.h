@@ -23,6 +23,7 @@ class BodyModel {
   std::size_t bodyCount() const { return shapes_.size(); }
   std::size_t size() const { return size_; }  // coordinates of all bodies
   const BodyShape& shape(BodyId body) const { return *shapes_[body.index()]; }
+  const BodyShapePtr& sharedShape(BodyId body) const { return shapes_[body.index()]; }
   std::size_t offset(BodyId body) const { return offsets_[body.index()]; }
   bool contains(BodyId body) const { return body.valid() && body.index() < shapes_.size(); }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fascia/body/for_each_body.h>
 
@@ -72,30 +73,48 @@ void BodyNewton::refresh() {
   }
 }
 
-BodyNewton::Result BodyNewton::solve(const OdeState& from, double h_s, OdeState& to) {
+BodyNewton::Result BodyNewton::solve(const OdeState& from, double h_s, double lead_s,
+                                     OdeState& to) {
   refresh();
   constantForces_ = system_.constantForces();
   guess(from, h_s, to.t_s);
+  findContacts(from, h_s, lead_s);
   Result result;
+  result.touching = contacts_ != nullptr;
+  const double tolerance = contacts_ ? options_.contact_tolerance : options_.tolerance;
   while (result.iterations < options_.max_iterations && !result.converged) {
     ++result.iterations;
-    evaluateConstraints(from, to.t_s);
-    forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { linearize(body, from, h_s); });
-    const bool sound = std::ranges::all_of(work_, &Work::sound);
-    if (!sound || !solveConstraints(h_s)) return result;
-    forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { correct(body); });
-    applyCorrections(from, h_s, to.t_s);
-    double largest = 0;
-    for (const Work& work : work_) largest = std::max(largest, work.correction);
-    if (!std::isfinite(largest)) return result;
-    result.converged = largest <= options_.tolerance;
+    if (contacts_) evaluateContacts(result.iterations);
+    result.correction = iterate(from, h_s, to.t_s);
+    if (!std::isfinite(result.correction)) return result;
+    result.converged = result.correction <= tolerance;
   }
+  if (contacts_) contacts_->evaluate(way_, ContactSet::Loads::follow);
   result.sound = true;
   for (std::size_t i = 0; i < way_.size(); ++i) {
     to.r[i] = from.r[i] + way_[i];
     to.v[i] = conserving_ ? 2 * way_[i] / h_s - from.v[i] : way_[i] / h_s;
   }
   return result;
+}
+
+// One of Newton's steps. Returns its largest correction as a part of a body's size; not finite if
+// there is none.
+double BodyNewton::iterate(const OdeState& from, double h_s, double t_s) {
+  evaluateConstraints(from, t_s);
+  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { linearize(body, from, h_s); });
+  const bool sound = std::ranges::all_of(work_, &Work::sound);
+  if (!sound || !solveConstraints(h_s)) return std::numeric_limits<double>::quiet_NaN();
+  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { correct(body); });
+  if (contacts_ && contacts_->hasPairs()) coupleContacts();
+  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { measure(body); });
+  applyCorrections(from, h_s, t_s);
+  double largest = 0;
+  for (const Work& work : work_) {
+    if (!std::isfinite(work.correction)) return work.correction;
+    largest = std::max(largest, work.correction);
+  }
+  return largest;
 }
 
 // A first way that is legal as far as constraints are linear: the search then stays among legal
@@ -151,6 +170,7 @@ void BodyNewton::linearize(BodyId body, const OdeState& from, double h_s) {
     work.residual -= rule_.weights[i] * work.force;
   }
   if (system_.damped()) work.residual.noalias() += work.damping * way / h_s;
+  if (contacts_) contacts_->addGradient(body, work.residual);
   work.sound = work.residual.allFinite() && factor(body, from, h_s);
 }
 
@@ -168,6 +188,7 @@ bool BodyNewton::factor(BodyId body, const OdeState& from, double h_s) {
       const double weight = rule_.weights[i] * rule_.nodes[i];  // ∂(q + place Δ)/∂Δ = place
       shape.addStiffness(spanOf(work.q), weight, curvature, work.matrix);
     }
+    if (contacts_) contacts_->addCurvature(body, work.matrix);
     if (!choleskyInPlace(work.matrix)) continue;
     respond(work);
     return true;
@@ -268,8 +289,14 @@ void BodyNewton::correct(BodyId body) {
     const Eigen::Index first = 1 + static_cast<Eigen::Index>(a) * d;
     for (int row = 0; row < d; ++row) correction += force[row] * work.response.col(first + row);
   }
+}
+
+void BodyNewton::measure(BodyId body) {
+  const BodyModel& model = system_.model();
   const BodyShape& shape = model.shape(body);
-  work.correction = correction.norm() / (shape.size_m() * std::sqrt(shape.mass_kg()));
+  const auto correction = vectorOf(model.part(body, std::span<const double>(correction_)));
+  work_[body.index()].correction =
+      correction.norm() / (shape.size_m() * std::sqrt(shape.mass_kg()));
 }
 
 // Δ += δ. Implicit Euler's step is the minimum of a merit (Martin et al. 2011, eq. 5): where all is
@@ -278,6 +305,7 @@ void BodyNewton::correct(BodyId body) {
 void BodyNewton::applyCorrections(const OdeState& from, double h_s, double t_s) {
   constexpr int kMaxHalvings = 12;
   double step = 1;
+  if (contacts_) contacts_->setDirection(correction_);
   // A single iteration is a linearly implicit step: there is nothing to compare it with.
   if (!conserving_ && constraints_.hasConstantJacobian() && options_.max_iterations > 1) {
     const double before = merit(from, h_s, t_s, 0);
@@ -313,6 +341,7 @@ double BodyNewton::merit(const OdeState& from, double h_s, double t_s, double st
               [&](BodyId body) { work_[body.index()].merit_J = bodyMerit(body, from, h_s, step); });
   double sum = 0;
   for (const Work& work : work_) sum += work.merit_J;
+  if (contacts_) sum += contacts_->merit_J(step);
   if (constraints_.size() == hardCount_) return sum;
   for (std::size_t i = 0; i < way_.size(); ++i)
     place_[i] = from.r[i] + way_[i] + step * correction_[i];

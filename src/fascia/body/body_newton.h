@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <fascia/body/body_contact.h>
 #include <fascia/body/body_stepper.h>
 #include <fascia/body/small_dense.h>
 
@@ -13,17 +14,21 @@ namespace fascia {
 // and the constraints tie the corrections δ together by
 //     (J A⁻¹ Jᵀ + 1/K) λ = −c + J A⁻¹ residual
 // with a compliance 1/K where a constraint is soft. A changes with the bodies' shapes, so this
-// matrix is factored in every iteration; its pattern and the order of elimination stay.
+// matrix is factored in every iteration; its pattern and the order of elimination stay. Contacts
+// add to A; those between bodies also couple them, which conjugate gradients see to.
 class BodyNewton {
  public:
   BodyNewton(BodySystem& system, const BodyStepperOptions& options);
 
   struct Result {
     bool sound = false, converged = false;
+    bool touching = false;  // there were contacts to look at
+    double correction = 0;  // the last one's largest part of a body's size
     int iterations = 0;
   };
-  // Allocates when the constraints have changed. `to` is sized; its t_s is the end of the step.
-  Result solve(const OdeState& from, double h_s, OdeState& to);
+  // Allocates when the constraints have changed. `to` is sized; its t_s is the end of the step,
+  // lead_s before the moment at which obstacles are posed.
+  Result solve(const OdeState& from, double h_s, double lead_s, OdeState& to);
 
  private:
   // Everything of one body that an iteration writes.
@@ -41,6 +46,7 @@ class BodyNewton {
   };
 
   void refresh();
+  double iterate(const OdeState& from, double h_s, double t_s);
   void guess(const OdeState& from, double h_s, double t_s);
   void evaluateConstraints(const OdeState& from, double t_s);
   void linearize(BodyId body, const OdeState& from, double h_s);
@@ -50,11 +56,17 @@ class BodyNewton {
   bool solveConstraints(double h_s);
   Vec3 wanted(std::size_t constraint, double h_s) const;
   void correct(BodyId body);
+  void measure(BodyId body);
   void applyCorrections(const OdeState& from, double h_s, double t_s);
   double merit(const OdeState& from, double h_s, double t_s, double step);
   double bodyMerit(BodyId body, const OdeState& from, double h_s, double step);
   bool isHard(std::size_t constraint) const { return constraint < hardCount_; }
   double gain(std::size_t softIndex, double h_s) const;
+  // body_newton_contact.cpp
+  void findContacts(const OdeState& from, double h_s, double lead_s);
+  void evaluateContacts(int iteration);
+  void coupleContacts();
+  void precondition(std::span<const double> residual, std::span<double> z);
 
   BodySystem& system_;
   const BodyStepperOptions options_;
@@ -68,6 +80,9 @@ class BodyNewton {
   std::vector<double> way_, correction_, place_;  // Δ, δ, where something is evaluated
   std::span<const double> constantForces_;
   std::vector<Vec3> lambda_, startValue_, endValue_;  // of all constraints
+  ContactSet* contacts_ = nullptr;                    // of this step, if there are any
+  // Of the conjugate gradients: ρ, z, p, A p but for the coupling, and with it.
+  std::vector<double> cgResidual_, cgAnswer_, cgDirection_, cgImage_, cgProduct_;
 };
 
 }  // namespace fascia

@@ -12,6 +12,9 @@ namespace {
 
 // A step that does not converge in 1/16 of its length will not in less.
 constexpr int kMaxHalvings = 4;
+// Contacts that come and go may keep Newton's method from its tolerance. If it ends this near, as a
+// part of a body's size, halving the step would cost more than it is worth.
+constexpr double kNearEnough = 1e-3;
 
 void checkOption(bool sound, const char* what, double found, const char* expected) {
   if (sound) return;
@@ -33,8 +36,12 @@ BodyStepper::BodyStepper(BodySystem& system, const BodyStepperOptions& options)
     : system_(system), options_(options) {
   checkOption(options.tolerance > 0 && options.tolerance < 1, "tolerance", options.tolerance,
               "a number in (0, 1)");
+  checkOption(options.contact_tolerance > 0 && options.contact_tolerance < 1, "contact_tolerance",
+              options.contact_tolerance, "a number in (0, 1)");
   checkOption(options.max_iterations >= 1 && options.max_iterations <= 1000, "max_iterations",
               options.max_iterations, "a number in [1, 1000]");
+  if (system.contacts() && options.scheme != BodyScheme::implicitEuler)
+    throw Error("body stepper: found contacts, which only the implicit Euler scheme knows");
   from_.resize(system.size()), to_.resize(system.size());
   if (options.scheme != BodyScheme::explicitEuler)
     newton_ = std::make_unique<BodyNewton>(system, options);
@@ -43,22 +50,23 @@ BodyStepper::BodyStepper(BodySystem& system, const BodyStepperOptions& options)
 BodyStepper::~BodyStepper() = default;
 
 void BodyStepper::step(double h_s, OdeState& state) {
-  stepOrHalve(h_s, state, kMaxHalvings);
+  stepOrHalve(h_s, 0, state, kMaxHalvings);
 }
 
-void BodyStepper::stepOrHalve(double h_s, OdeState& state, int halvingsLeft) {
-  const Outcome outcome = tryStep(h_s, state, to_);
+void BodyStepper::stepOrHalve(double h_s, double lead_s, OdeState& state, int halvingsLeft) {
+  const Outcome outcome = tryStep(h_s, lead_s, state, to_);
   const bool finite = outcome != Outcome::failed && allFinite(to_);
   // One Newton step is all that was asked for.
   const bool single = options_.max_iterations == 1;
-  if (finite && (outcome == Outcome::converged || single || halvingsLeft == 0)) {
-    if (outcome == Outcome::unconverged && !single) ++stats_.unconverged;
+  const bool done = outcome == Outcome::converged || outcome == Outcome::near;
+  if (finite && (done || single || halvingsLeft == 0)) {
+    if (outcome != Outcome::converged && !single) ++stats_.unconverged;
     ++stats_.steps;
     std::swap(state, to_);
   } else if (halvingsLeft > 0) {
     ++stats_.halved;
-    stepOrHalve(0.5 * h_s, state, halvingsLeft - 1);
-    stepOrHalve(0.5 * h_s, state, halvingsLeft - 1);
+    stepOrHalve(0.5 * h_s, lead_s + 0.5 * h_s, state, halvingsLeft - 1);
+    stepOrHalve(0.5 * h_s, lead_s, state, halvingsLeft - 1);
   } else {
     ++stats_.stopped;
     state.t_s += h_s;
@@ -66,17 +74,19 @@ void BodyStepper::stepOrHalve(double h_s, OdeState& state, int halvingsLeft) {
   }
 }
 
-BodyStepper::Outcome BodyStepper::tryStep(double h_s, const OdeState& from, OdeState& to) {
+BodyStepper::Outcome BodyStepper::tryStep(double h_s, double lead_s, const OdeState& from,
+                                          OdeState& to) {
   to.resize(system_.size());
   to.t_s = from.t_s + h_s;
   if (!newton_) {
     explicitStep(h_s, from, to);
     return Outcome::converged;
   }
-  const BodyNewton::Result result = newton_->solve(from, h_s, to);
+  const BodyNewton::Result result = newton_->solve(from, h_s, lead_s, to);
   stats_.iterations += static_cast<std::uint64_t>(result.iterations);
   if (!result.sound) return Outcome::failed;
-  return result.converged ? Outcome::converged : Outcome::unconverged;
+  if (result.converged) return Outcome::converged;
+  return result.touching && result.correction <= kNearEnough ? Outcome::near : Outcome::unconverged;
 }
 
 void BodyStepper::explicitStep(double h_s, const OdeState& from, OdeState& to) {

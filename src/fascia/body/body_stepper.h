@@ -28,21 +28,26 @@ struct BodyStepperOptions {
   BodyScheme scheme = BodyScheme::implicitEuler;
   // Newton's corrections below this part of a body's size end a step.
   double tolerance = 1e-10;  // (0, 1)
-  int max_iterations = 30;   // [1, 1000]; with 1 a step is linearly implicit: the cheapest
+  // The same for steps in which there are contacts. Their gaps are a hundredth of a body, so that
+  // they hardly gain by more; it costs an iteration or two.
+  double contact_tolerance = 1e-5;  // (0, 1)
+  int max_iterations = 30;          // [1, 1000]; with 1 a step is linearly implicit: the cheapest
 };
 
 struct BodyStepperStats {
-  std::uint64_t steps = 0;        // taken, parts of halved ones included
-  std::uint64_t iterations = 0;   // of Newton's method
-  std::uint64_t halved = 0;       // steps that did not converge and were taken in two parts
-  std::uint64_t unconverged = 0;  // accepted above the tolerance, at the smallest part
-  std::uint64_t stopped = 0;      // not finite even then: everything stands still instead
+  std::uint64_t steps = 0;       // taken, parts of halved ones included
+  std::uint64_t iterations = 0;  // of Newton's method
+  std::uint64_t halved = 0;      // steps that did not converge and were taken in two parts
+  // Accepted above the tolerance: at the smallest part, or because of contacts and nearly there.
+  std::uint64_t unconverged = 0;
+  std::uint64_t stopped = 0;  // not finite even then: everything stands still instead
 };
 
 // Takes BodySystems through time in fixed steps. Allocates when the constraints have changed, only.
 class BodyStepper {
  public:
-  // Throws Error if an option is out of its range. The system must outlive the stepper.
+  // Throws Error if an option is out of its range, or if the system has contacts and the scheme is
+  // not implicitEuler, the only one that knows them. The system must outlive the stepper.
   explicit BodyStepper(BodySystem& system, const BodyStepperOptions& options = {});
   ~BodyStepper();
 
@@ -53,9 +58,10 @@ class BodyStepper {
   const BodyStepperStats& stats() const { return stats_; }
 
  private:
-  enum class Outcome { converged, unconverged, failed };
-  void stepOrHalve(double h_s, OdeState& state, int halvingsLeft);
-  Outcome tryStep(double h_s, const OdeState& from, OdeState& to);
+  enum class Outcome { converged, near, unconverged, failed };
+  // lead_s: from the end of this part to that of the whole step.
+  void stepOrHalve(double h_s, double lead_s, OdeState& state, int halvingsLeft);
+  Outcome tryStep(double h_s, double lead_s, const OdeState& from, OdeState& to);
   void explicitStep(double h_s, const OdeState& from, OdeState& to);
 
   BodySystem& system_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fascia/base/error.h>
+#include <fascia/body/body_contact.h>
 #include <fascia/body/for_each_body.h>
 
 namespace fascia {
@@ -31,6 +32,27 @@ BodySystem::BodySystem(BodyModel model, const BodySettings& settings)
   work_.resize(model_.size());
   for (std::size_t b = 0; b < model_.bodyCount(); ++b)
     damped_ = damped_ || model_.shape(BodyId(b)).damped();
+}
+
+BodySystem::~BodySystem() = default;
+
+BodyContacts& BodySystem::setContacts(const ContactSettings& settings) {
+  contacts_ = std::make_unique<BodyContacts>(model_, settings_.gravity_m_per_s2, settings);
+  tiesVersion_ = -1;
+  return *contacts_;
+}
+
+BodyContacts* BodySystem::contacts() {
+  if (!contacts_ || tiesVersion_ == version_) return contacts_.get();
+  tiesVersion_ = version_;
+  std::vector<BodyContacts::Pair> ties;
+  for (const Held& held : held_)
+    for (const BodyPoint& a : held.constraint->points())
+      for (const BodyPoint& b : held.constraint->points())
+        if (a.body < b.body) ties.emplace_back(a.body, b.body);
+  std::ranges::sort(ties);
+  contacts_->setTies(std::move(ties));
+  return contacts_.get();
 }
 
 void BodySystem::checkPoints(const Constraint& constraint) const {

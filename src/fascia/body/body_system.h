@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,9 @@
 #include <fascia/math/ode/system.h>
 
 namespace fascia {
+
+class BodyContacts;
+struct ContactSettings;
 
 // A constraint that pulls instead of holding: force Jᵀ(−k c − d ċ). An attachment so softened is a
 // spring between two points, a trajectory the handle by which a person drags a body.
@@ -33,6 +37,7 @@ class BodySystem final : public SecondOrderSystem {
  public:
   // Throws Error if a number is out of its range.
   explicit BodySystem(BodyModel model, const BodySettings& settings = {});
+  ~BodySystem() override;
   BodySystem(const BodySystem&) = delete;
   BodySystem& operator=(const BodySystem&) = delete;
 
@@ -47,6 +52,11 @@ class BodySystem final : public SecondOrderSystem {
   // A force that acts on a point until it is cleared, N. For forces that change every step.
   void addPointForce(const BodyPoint& point, const Vec3& force_N);
   void clearPointForces();
+
+  // Lets bodies collide from now on (body_contact.h), in place of what was set before. To be called
+  // before the stepper is made; contacts are no part of the forces and energies below.
+  BodyContacts& setContacts(const ContactSettings& settings);
+  BodyContacts* contacts();  // nullptr: there are none
 
   // Rows of the constraints held that follow from others or contradict them, at the given state.
   std::vector<Redundancy> redundancies(const OdeState& state);
@@ -118,10 +128,12 @@ class BodySystem final : public SecondOrderSystem {
   std::vector<Held> held_;
   int nextConstraint_ = 0, version_ = 0;
   bool changed_ = false, forcesChanged_ = true, damped_ = false;
+  int tiesVersion_ = -1;  // of constraints, when the contacts were told of them
   ConstraintSolver hard_;
   ConstraintList soft_;
   std::vector<Softness> softness_;
   std::vector<Vec3> curvature_;  // of constraints that are not linear, at rest
+  std::unique_ptr<BodyContacts> contacts_;
 };
 
 }  // namespace fascia

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fascia/base/error.h>
+#include <fascia/geometry/polygon.h>
 
 namespace fascia {
 namespace {
@@ -24,9 +25,9 @@ Quadrature scaled(Quadrature rule, double factor) {
 }
 
 // Few points make fast bodies; no more are needed than the energy's polynomials.
-Quadrature reducedVolume(const Quadrature& rule, int degree) {
+Quadrature reducedVolume(const Quadrature& rule, int dimension, int degree) {
   constexpr int kMaxReducedDegree = 8;
-  return degree <= kMaxReducedDegree ? reducedQuadrature(rule, 3, degree) : rule;
+  return degree <= kMaxReducedDegree ? reducedQuadrature(rule, dimension, degree) : rule;
 }
 
 }  // namespace
@@ -57,6 +58,15 @@ Matter boxMatter(int dimension, const Box& box, double density_kg_per_m3, Matter
           boxQuadrature(dimension, box, detail.energy_degree)};
 }
 
+Matter outlineMatter(std::span<const Vec2> outline_m, double density_kg_per_m2,
+                     MatterDetail detail) {
+  checkPositive("density_kg_per_m2", density_kg_per_m2);
+  checkSimplePolygon(outline_m);
+  return {scaled(polygonQuadrature(outline_m, detail.mass_degree), density_kg_per_m2),
+          reducedVolume(triangulatedQuadrature(outline_m, detail.energy_degree), 2,
+                        detail.energy_degree)};
+}
+
 Matter meshMatter(const TriangleMesh& mesh, double density_kg_per_m3, double cell_m,
                   MatterDetail detail) {
   checkPositive("density_kg_per_m3", density_kg_per_m3);
@@ -67,7 +77,7 @@ Matter meshMatter(const TriangleMesh& mesh, double density_kg_per_m3, double cel
                 matter.mass.total());
   const Quadrature samples = sampledMeshQuadrature(mesh, cell_m, detail.energy_degree);
   checkPositive("volume found in columns of cell_m (m3)", samples.total());
-  matter.volume = reducedVolume(samples, detail.energy_degree);
+  matter.volume = reducedVolume(samples, 3, detail.energy_degree);
   // The samples' volume is off by what the columns miss; the exact one is known.
   const double exact_m3 = matter.mass.total() / density_kg_per_m3;
   matter.volume = scaled(matter.volume, exact_m3 / samples.total());
@@ -103,7 +113,7 @@ Matter solidMatter(const Solid& solid, double density_kg_per_m3, double cell_m,
     }
   }
   checkPositive("volume found in cells of cell_m (m3)", samples.total());
-  return {scaled(samples, density_kg_per_m3), reducedVolume(samples, detail.energy_degree)};
+  return {scaled(samples, density_kg_per_m3), reducedVolume(samples, 3, detail.energy_degree)};
 }
 
 }  // namespace fascia

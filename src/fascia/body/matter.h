@@ -31,6 +31,9 @@ Matter pointMatter(std::span<const Vec3> points_m, std::span<const double> masse
                    double volume_m3);
 // A box (in two dimensions its x–y rectangle, density in kg/m²); exact.
 Matter boxMatter(int dimension, const Box& box, double density_kg_per_m3, MatterDetail detail);
+// The inside of a simple polygon; exact. Throws Error as checkSimplePolygon() does.
+Matter outlineMatter(std::span<const Vec2> outline_m, double density_kg_per_m2,
+                     MatterDetail detail);
 // The inside of a closed mesh, the mass exact, the energy sampled in columns cell_m wide.
 Matter meshMatter(const TriangleMesh& mesh, double density_kg_per_m3, double cell_m,
                   MatterDetail detail);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <fascia/geometry/polygon.h>
+
 namespace fascia {
 
 double Quadrature::total() const {
@@ -51,6 +53,43 @@ Quadrature boxQuadrature(int dimension, const Box& box, int degree) {
       }
     }
   }
+  return rule;
+}
+
+namespace {
+
+// The square [0, 1]² is mapped onto the triangle by X = a + u (b − a + v (c − b)) with the
+// determinant u times that of the sides, which adds 1 to the degree.
+void addTriangle(const Vec2& a, const Vec2& b, const Vec2& c, double sign, const LineRule& line,
+                 Quadrature& rule) {
+  const Vec2 ab = b - a, ac = c - a;
+  const double determinant = sign * (ab.x() * ac.y() - ab.y() * ac.x());
+  if (determinant == 0) return;
+  for (std::size_t i = 0; i < line.nodes.size(); ++i) {
+    for (std::size_t j = 0; j < line.nodes.size(); ++j) {
+      const double u = line.nodes[i], v = line.nodes[j];
+      const Vec2 X = a + u * (ab + v * (c - b));
+      rule.add(Vec3(X.x(), X.y(), 0), determinant * u * line.weights[i] * line.weights[j]);
+    }
+  }
+}
+
+}  // namespace
+
+Quadrature polygonQuadrature(std::span<const Vec2> polygon_m, int degree) {
+  const LineRule line = gaussRuleOfDegree(degree + 1);
+  const double sign = signedArea(polygon_m) < 0 ? -1 : 1;
+  Quadrature rule;
+  for (std::size_t i = 1; i + 1 < polygon_m.size(); ++i)
+    addTriangle(polygon_m[0], polygon_m[i], polygon_m[i + 1], sign, line, rule);
+  return rule;
+}
+
+Quadrature triangulatedQuadrature(std::span<const Vec2> polygon_m, int degree) {
+  const LineRule line = gaussRuleOfDegree(degree + 1);
+  Quadrature rule;
+  for (const auto& [a, b, c] : triangulatePolygon(polygon_m))
+    addTriangle(polygon_m[a], polygon_m[b], polygon_m[c], 1, line, rule);
   return rule;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <fascia/geometry/triangle_mesh.h>
@@ -29,6 +30,12 @@ LineRule gaussRuleOfDegree(int degree);
 
 // Exact for polynomials up to `degree` in each coordinate over the box (its x–y rectangle).
 Quadrature boxQuadrature(int dimension, const Box& box, int degree);
+
+// The same over the inside of a simple polygon in the plane z = 0. By signed triangles from its
+// first corner; weights have both signs, and points lie outside too.
+Quadrature polygonQuadrature(std::span<const Vec2> polygon_m, int degree);
+// By the triangles of triangulatePolygon(): more points, all of them inside, all weights positive.
+Quadrature triangulatedQuadrature(std::span<const Vec2> polygon_m, int degree);
 
 // Exact for polynomials up to the total `degree` over the inside of a closed mesh: every triangle
 // and the origin span a tetrahedron whose sign is the side that the triangle faces (the divergence

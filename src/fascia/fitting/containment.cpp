@@ -30,7 +30,7 @@ struct Clash {
   std::vector<Vec3> skin;
 };
 
-void addSkinWithin(const BodySurface& surface, const FittedSolid& solid, double margin_m,
+void addSkinWithin(const RestSurface& surface, const FittedSolid& solid, double margin_m,
                    Clash& clash) {
   const Box box = worldBounds(solid, margin_m);
   std::vector<Vec3> near;
@@ -49,18 +49,18 @@ void addSkinWithin(const BodySurface& surface, const FittedSolid& solid, double 
   }
 }
 
-void addEmerging(const BodySurface& surface, const FittedSolid& solid, double margin_m,
+void addEmerging(const RestSurface& surface, const FittedSolid& solid, double margin_m,
                  Clash& clash) {
   for (const Eigen::Vector3f& local : solid.solid().tessellate(kDetail).positions) {
     const Vec3 p = solid.world.point(local.cast<double>());
-    const BodySurface::Nearest nearest = surface.nearest(p);
+    const RestSurface::Nearest nearest = surface.nearest(p);
     if (nearest.distance_m <= 0 || surface.inside(p)) continue;
     clash.lack_m = std::max(clash.lack_m, nearest.distance_m + margin_m);
     clash.skin.push_back(nearest.position_m);
   }
 }
 
-Clash findClash(const BodySurface& surface, const MirrorPlane* plane, double margin_m,
+Clash findClash(const RestSurface& surface, const MirrorPlane* plane, double margin_m,
                 const FittedSolid& solid) {
   Clash clash;
   addSkinWithin(surface, solid, margin_m, clash);
@@ -76,11 +76,11 @@ Clash findClash(const BodySurface& surface, const MirrorPlane* plane, double mar
 
 }  // namespace
 
-double deepestOutside_m(const BodySurface& surface, const FittedSolid& solid) {
+double deepestOutside_m(const RestSurface& surface, const FittedSolid& solid) {
   return findClash(surface, nullptr, 0, solid).lack_m;
 }
 
-bool shrinkInside(const BodySurface& surface, const MirrorPlane* plane, double margin_m,
+bool shrinkInside(const RestSurface& surface, const MirrorPlane* plane, double margin_m,
                   FittedSolid& solid) {
   const Vec3 least = kLeastLeft * solid.half_m;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -93,7 +93,7 @@ bool shrinkInside(const BodySurface& surface, const MirrorPlane* plane, double m
   return false;
 }
 
-bool fitInside(const BodySurface& surface, const MirrorPlane* plane, double margin_m,
+bool fitInside(const RestSurface& surface, const MirrorPlane* plane, double margin_m,
                SolidTarget target, FittedSolid& solid) {
   constexpr std::size_t kMostAdded = 200;
   FittedSolid guess = solid;

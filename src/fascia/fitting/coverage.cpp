@@ -19,7 +19,7 @@ struct Probes {
   std::vector<char> covered;  // per sample
 };
 
-Probes makeProbes(const BodySurface& surface) {
+Probes makeProbes(const RestSurface& surface) {
   Probes probes;
   for (const SurfaceSample& s : surface.samples()) {
     const double deepest_m = std::max(s.radius_m, 2 * s.fat_m);
@@ -48,7 +48,7 @@ void markCovered(const FittedSolid& solid, Probes& probes) {
 
 }  // namespace
 
-void measureFit(const BodySurface& surface, std::span<const FittedSolid> solids,
+void measureFit(const RestSurface& surface, std::span<const FittedSolid> solids,
                 std::span<const std::size_t> solidJoint, FleshFit& fit) {
   std::vector<double> outside(solids.size());
   parallelFor(solids.size(),

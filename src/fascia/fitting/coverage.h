@@ -2,14 +2,14 @@
 
 #include <span>
 
-#include <fascia/fitting/body_surface.h>
 #include <fascia/fitting/fitted_solid.h>
+#include <fascia/fitting/rest_surface.h>
 
 namespace fascia {
 
 // Writes coverage and deepest_outside_m of every joint, and the totals. `solidJoint`: whose the
 // solids are.
-void measureFit(const BodySurface& surface, std::span<const FittedSolid> solids,
+void measureFit(const RestSurface& surface, std::span<const FittedSolid> solids,
                 std::span<const std::size_t> solidJoint, FleshFit& fit);
 
 }  // namespace fascia

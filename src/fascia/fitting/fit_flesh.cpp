@@ -18,7 +18,7 @@ std::string millimetres(double length_m) {
   return std::to_string(static_cast<long>(std::lround(1000 * length_m))) + " mm";
 }
 
-std::string whyNone(const BodySurface& surface, const FleshPart& part) {
+std::string whyNone(const RestSurface& surface, const FleshPart& part) {
   if (part.area_m2 <= 0) return "dominates no skin";
   if (part.area_m2 < kLeastArea * surface.area_m2())
     return "dominates next to no skin: left to its neighbour";
@@ -99,7 +99,7 @@ std::vector<std::size_t> dominatedPoints(const RiggedModel& model) {
   return counts;
 }
 
-void addNotes(const BodySurface& surface, const Symmetry& symmetry, FleshFit& out) {
+void addNotes(const RestSurface& surface, const Symmetry& symmetry, FleshFit& out) {
   const auto hidden = std::lround(100 * surface.hiddenShare());
   if (hidden > 0)
     out.notes.push_back(std::to_string(hidden) +
@@ -111,7 +111,7 @@ void addNotes(const BodySurface& surface, const Symmetry& symmetry, FleshFit& ou
 
 FleshFit fitFlesh(const RiggedModel& model, const FitOptions& options) {
   FleshFit out;
-  const BodySurface surface(model, options);
+  const RestSurface surface(model, options);
   const Symmetry symmetry = findSymmetry(model);
   const std::vector<BoneFrame> frames = findBoneFrames(model, surface, symmetry);
   out.skeleton = makeSkeleton(model, frames);

@@ -48,7 +48,7 @@ struct Collector {
   }
 };
 
-void addNear(const BodySurface& surface, const MirrorPlane* plane, Box box, FleshPart& part) {
+void addNear(const RestSurface& surface, const MirrorPlane* plane, Box box, FleshPart& part) {
   const Vec3 margin = Vec3::Constant(part.radius_m);
   box.low -= margin;
   box.high += margin;
@@ -106,7 +106,7 @@ void measureShape(const Symmetry& symmetry, const Vec3& origin, FleshPart& part)
 
 }  // namespace
 
-FleshPart findFleshPart(const BodySurface& surface, const Symmetry& symmetry,
+FleshPart findFleshPart(const RestSurface& surface, const Symmetry& symmetry,
                         const BoneFrame& frame, std::size_t joint) {
   FleshPart part;
   part.joint = joint;
@@ -139,7 +139,7 @@ FleshPart subPart(const Symmetry& symmetry, const BoneFrame& frame, const FleshP
   return part;
 }
 
-SolidTarget surfaceTarget(const BodySurface& surface, const FleshPart& part) {
+SolidTarget surfaceTarget(const RestSurface& surface, const FleshPart& part) {
   SolidTarget target;
   target.size_m = part.radius_m;
   target.symmetric = part.central;
@@ -160,13 +160,13 @@ SolidTarget surfaceTarget(const BodySurface& surface, const FleshPart& part) {
   return target;
 }
 
-double depth_m(const BodySurface& surface, const Vec3& p) {
+double depth_m(const RestSurface& surface, const Vec3& p) {
   if (!surface.inside(p)) return 0;
   const double deep_m = -surface.signedDistance(p);
   return std::max(0.0, deep_m - surface.fat_m(deep_m));
 }
 
-SolidTarget wholeTarget(const BodySurface& surface, const FleshPart& part, const BoneFrame& frame) {
+SolidTarget wholeTarget(const RestSurface& surface, const FleshPart& part, const BoneFrame& frame) {
   SolidTarget target = surfaceTarget(surface, part);
   for (const Vec3& pin : {frame.world.translation_m, frame.end_m}) {
     const double wanted_m = 0.5 * depth_m(surface, pin);
@@ -175,7 +175,7 @@ SolidTarget wholeTarget(const BodySurface& surface, const FleshPart& part, const
   return target;
 }
 
-FittedSolid wholeGuess(const BodySurface& surface, const FleshPart& part, const BoneFrame& frame) {
+FittedSolid wholeGuess(const RestSurface& surface, const FleshPart& part, const BoneFrame& frame) {
   FittedSolid guess;
   const Vec3 y = (part.across - part.across.dot(part.axis) * part.axis).normalized();
   const Vec3 x = y.cross(part.axis);

@@ -25,7 +25,7 @@ struct FleshPart {
   std::vector<Vec3> near;            // the rest of the skin around
 };
 
-FleshPart findFleshPart(const BodySurface& surface, const Symmetry& symmetry,
+FleshPart findFleshPart(const RestSurface& surface, const Symmetry& symmetry,
                         const BoneFrame& frame, std::size_t joint);
 
 // The same part with only some of its skin.
@@ -33,12 +33,12 @@ FleshPart subPart(const Symmetry& symmetry, const BoneFrame& frame, const FleshP
                   std::vector<SurfaceSample> own, bool central);
 
 // Radius of the ball of flesh around a point that fits under skin and fat; 0 outside.
-double depth_m(const BodySurface& surface, const Vec3& p);
+double depth_m(const RestSurface& surface, const Vec3& p);
 
 // Reaches the part's skin and keeps under all the skin around.
-SolidTarget surfaceTarget(const BodySurface& surface, const FleshPart& part);
+SolidTarget surfaceTarget(const RestSurface& surface, const FleshPart& part);
 // A target for one solid that fills the whole part, and where to begin.
-SolidTarget wholeTarget(const BodySurface& surface, const FleshPart& part, const BoneFrame& frame);
-FittedSolid wholeGuess(const BodySurface& surface, const FleshPart& part, const BoneFrame& frame);
+SolidTarget wholeTarget(const RestSurface& surface, const FleshPart& part, const BoneFrame& frame);
+FittedSolid wholeGuess(const RestSurface& surface, const FleshPart& part, const BoneFrame& frame);
 
 }  // namespace fascia

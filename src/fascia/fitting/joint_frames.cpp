@@ -21,7 +21,7 @@ struct Dominion {
   Vec3 centre_m() const { return weightedSum_m3 / area_m2; }
 };
 
-std::vector<Dominion> findDominions(const RiggedModel& model, const BodySurface& surface) {
+std::vector<Dominion> findDominions(const RiggedModel& model, const RestSurface& surface) {
   std::vector<Dominion> dominions(model.joints.size());
   for (const SurfaceSample& s : surface.samples()) {
     Dominion& d = dominions[s.joint[0]];
@@ -54,7 +54,7 @@ int mainChild(const RiggedModel& model, const Symmetry& symmetry,
 }
 
 // A bone without a main child leads through the middle of its points to their end.
-void endAtPoints(const BodySurface& surface, std::size_t joint, const Vec3& direction,
+void endAtPoints(const RestSurface& surface, std::size_t joint, const Vec3& direction,
                  BoneFrame& frame) {
   std::vector<double> along;
   for (const SurfaceSample& s : surface.samples()) {
@@ -186,7 +186,7 @@ BoneFrame mirroredFrame(const Symmetry& symmetry, const BoneFrame& other, const 
 
 }  // namespace
 
-std::vector<BoneFrame> findBoneFrames(const RiggedModel& model, const BodySurface& surface,
+std::vector<BoneFrame> findBoneFrames(const RiggedModel& model, const RestSurface& surface,
                                       const Symmetry& symmetry) {
   const std::size_t count = model.joints.size();
   const double least_m = 1e-3 * model.size_m();

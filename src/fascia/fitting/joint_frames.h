@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <fascia/fitting/body_surface.h>
+#include <fascia/fitting/rest_surface.h>
 #include <fascia/fitting/symmetry.h>
 
 namespace fascia {
@@ -15,7 +15,7 @@ struct BoneFrame {
   double length_m = 0;
 };
 
-std::vector<BoneFrame> findBoneFrames(const RiggedModel& model, const BodySurface& surface,
+std::vector<BoneFrame> findBoneFrames(const RiggedModel& model, const RestSurface& surface,
                                       const Symmetry& symmetry);
 
 // The rig's joints with these frames, free in all six ways.

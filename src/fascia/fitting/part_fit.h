@@ -26,7 +26,7 @@ struct PartFit {
 
 // What all parts' fits share.
 struct FitSetting {
-  const BodySurface& surface;
+  const RestSurface& surface;
   const Symmetry& symmetry;
 
   double margin_m() const { return 0.25 * surface.leastFat_m(); }

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include <fascia/fitting/body_surface.h>
 #include <fascia/fitting/fitted_solid.h>
+#include <fascia/fitting/rest_surface.h>
 
 namespace fascia {
 

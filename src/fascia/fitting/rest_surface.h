@@ -29,11 +29,11 @@ struct SurfaceSample {
 };
 
 // The rest skin as fitting sees it: samples with local thickness, and what is inside.
-class BodySurface {
+class RestSurface {
  public:
-  BodySurface(const RiggedModel& model, const FitOptions& options);
-  BodySurface(const BodySurface&) = delete;
-  BodySurface& operator=(const BodySurface&) = delete;
+  RestSurface(const RiggedModel& model, const FitOptions& options);
+  RestSurface(const RestSurface&) = delete;
+  RestSurface& operator=(const RestSurface&) = delete;
 
   double height_m() const { return height_m_; }
   double area_m2() const { return area_m2_; }

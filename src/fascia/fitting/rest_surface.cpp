@@ -1,4 +1,4 @@
-#include <fascia/fitting/body_surface.h>
+#include <fascia/fitting/rest_surface.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ TriangleMesh smoothMesh(const RiggedModel& model) {
 
 }  // namespace
 
-BodySurface::BodySurface(const RiggedModel& model, const FitOptions& options)
+RestSurface::RestSurface(const RiggedModel& model, const FitOptions& options)
     : mesh_(smoothMesh(model)), hierarchy_(mesh_), fatShare_(options.fat_share) {
   height_m_ = std::max(model.height_m(), 0.1 * model.size_m());
   size_m_ = model.size_m();
@@ -73,13 +73,13 @@ BodySurface::BodySurface(const RiggedModel& model, const FitOptions& options)
   parallelFor(samples_.size(), [&](std::size_t i) { measureThickness(samples_[i]); });
 }
 
-double BodySurface::fat_m(double radius_m) const {
+double RestSurface::fat_m(double radius_m) const {
   return std::max(leastFat_m_, fatShare_ * radius_m);
 }
 
 // Centroids of n² equal pieces. Triangles smaller than a sample's area have one each; if there are
 // very many, one in several.
-void BodySurface::addSamples(const RiggedModel& model, std::uint32_t triangle, double spacing_m) {
+void RestSurface::addSamples(const RiggedModel& model, std::uint32_t triangle, double spacing_m) {
   const auto& corners = mesh_.triangles[triangle];
   std::array<Vec3, 3> p, n;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -113,7 +113,7 @@ void BodySurface::addSamples(const RiggedModel& model, std::uint32_t triangle, d
 }
 
 // A triangle stays visible if one of its samples is; those without a sample stay, too.
-void BodySurface::dropHidden() {
+void RestSurface::dropHidden() {
   std::vector<char> hidden(samples_.size(), 0);
   const bool pieces = std::any_of(component_.begin(), component_.end(),
                                   [&](std::uint32_t c) { return c != component_.front(); });
@@ -138,7 +138,7 @@ void BodySurface::dropHidden() {
   keepTriangles(sampled, seen);
 }
 
-void BodySurface::keepTriangles(const std::vector<char>& sampled, const std::vector<char>& seen) {
+void RestSurface::keepTriangles(const std::vector<char>& sampled, const std::vector<char>& seen) {
   visible_.positions = mesh_.positions;
   visible_.normals = mesh_.normals;
   std::vector<char> used(mesh_.positions.size(), 0);
@@ -153,7 +153,7 @@ void BodySurface::keepTriangles(const std::vector<char>& sampled, const std::vec
   visibleHierarchy_.emplace(visible_);
 }
 
-bool BodySurface::inside(const Vec3& p, std::uint32_t except) const {
+bool RestSurface::inside(const Vec3& p, std::uint32_t except) const {
   constexpr int kMostHits = 64;
   int votes = 0;
   for (const Vec3& direction : voters()) {
@@ -171,7 +171,7 @@ bool BodySurface::inside(const Vec3& p, std::uint32_t except) const {
   return votes >= 3;
 }
 
-BodySurface::Nearest BodySurface::nearest(const Vec3& p) const {
+RestSurface::Nearest RestSurface::nearest(const Vec3& p) const {
   const auto found = visibleHierarchy_->closest(p);
   if (!found) return {p, 1e150};
   const auto& corners = visible_.triangles[found->triangle];
@@ -185,7 +185,7 @@ BodySurface::Nearest BodySurface::nearest(const Vec3& p) const {
 
 // Pieces that the ray enters on its way must be left again before the body is; if one is open, the
 // last way out counts.
-double BodySurface::thickness(const Vec3& p, const Vec3& inward, double limit_m) const {
+double RestSurface::thickness(const Vec3& p, const Vec3& inward, double limit_m) const {
   constexpr int kMostHits = 12;
   double t = 1e-5 * size_m_, last = 0;
   int surrounding = 1;
@@ -204,7 +204,7 @@ double BodySurface::thickness(const Vec3& p, const Vec3& inward, double limit_m)
 
 // The shape diameter function (Shapira, Shamir & Cohen-Or 2008): the median length of rays in a
 // cone around the inward normal. Ours: a cone of 35° and one ring, for we only want its scale.
-void BodySurface::measureThickness(SurfaceSample& sample) const {
+void RestSurface::measureThickness(SurfaceSample& sample) const {
   constexpr std::size_t kRing = 6;
   const double cone = radians(35);
   const Vec3 inward = -sample.normal;
