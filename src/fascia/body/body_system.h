@@ -10,6 +10,8 @@
 
 namespace fascia {
 
+using PointForceId = Id<struct PointForceTag>;
+
 // A constraint that pulls instead of holding: force Jᵀ(−k c − d ċ). An attachment so softened is a
 // spring between two points, a trajectory the handle by which a person drags a body.
 struct SoftConstraint {
@@ -45,7 +47,8 @@ class BodySystem final : public SecondOrderSystem {
   void release(ConstraintId constraint);  // nothing happens if it is gone already
   bool holds(ConstraintId constraint) const;
   // A force that acts on a point until it is cleared, N. For forces that change every step.
-  void addPointForce(const BodyPoint& point, const Vec3& force_N);
+  PointForceId addPointForce(const BodyPoint& point, const Vec3& force_N);
+  void removePointForce(PointForceId force);  // nothing happens if it is gone already
   void clearPointForces();
 
   // Rows of the constraints held that follow from others or contradict them, at the given state.
@@ -100,6 +103,7 @@ class BodySystem final : public SecondOrderSystem {
     std::optional<Softness> softness;
   };
   struct PointForce {
+    PointForceId id;
     BodyPoint point;
     Vec3 force_N;
     Eigen::VectorXd weights;
@@ -116,7 +120,7 @@ class BodySystem final : public SecondOrderSystem {
   std::vector<double> inverseMass_, constantForces_, work_;
   std::vector<PointForce> pointForces_;
   std::vector<Held> held_;
-  int nextConstraint_ = 0, version_ = 0;
+  int nextConstraint_ = 0, nextForce_ = 0, version_ = 0;
   bool changed_ = false, forcesChanged_ = true, damped_ = false;
   ConstraintSolver hard_;
   ConstraintList soft_;
