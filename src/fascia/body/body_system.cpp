@@ -94,10 +94,17 @@ bool BodySystem::holds(ConstraintId id) const {
   return std::ranges::any_of(held_, [&](const Held& held) { return held.id == id; });
 }
 
-void BodySystem::addPointForce(const BodyPoint& point, const Vec3& force_N) {
+PointForceId BodySystem::addPointForce(const BodyPoint& point, const Vec3& force_N) {
   if (!model_.contains(point.body)) throw Error("point force: found a point of no body");
-  pointForces_.push_back({point, force_N, model_.shape(point.body).pointWeights(point.X_m)});
+  const PointForceId id(nextForce_++);
+  pointForces_.push_back({id, point, force_N, model_.shape(point.body).pointWeights(point.X_m)});
   forcesChanged_ = true;
+  return id;
+}
+
+void BodySystem::removePointForce(PointForceId id) {
+  if (std::erase_if(pointForces_, [&](const PointForce& force) { return force.id == id; }) > 0)
+    forcesChanged_ = true;
 }
 
 void BodySystem::clearPointForces() {

@@ -13,6 +13,7 @@ namespace fascia {
 
 class BodyContacts;
 struct ContactSettings;
+using PointForceId = Id<struct PointForceTag>;
 
 // A constraint that pulls instead of holding: force Jᵀ(−k c − d ċ). An attachment so softened is a
 // spring between two points, a trajectory the handle by which a person drags a body.
@@ -50,7 +51,8 @@ class BodySystem final : public SecondOrderSystem {
   void release(ConstraintId constraint);  // nothing happens if it is gone already
   bool holds(ConstraintId constraint) const;
   // A force that acts on a point until it is cleared, N. For forces that change every step.
-  void addPointForce(const BodyPoint& point, const Vec3& force_N);
+  PointForceId addPointForce(const BodyPoint& point, const Vec3& force_N);
+  void removePointForce(PointForceId force);  // nothing happens if it is gone already
   void clearPointForces();
 
   // Lets bodies collide from now on (body_contact.h), in place of what was set before. To be called
@@ -110,6 +112,7 @@ class BodySystem final : public SecondOrderSystem {
     std::optional<Softness> softness;
   };
   struct PointForce {
+    PointForceId id;
     BodyPoint point;
     Vec3 force_N;
     Eigen::VectorXd weights;
@@ -126,7 +129,7 @@ class BodySystem final : public SecondOrderSystem {
   std::vector<double> inverseMass_, constantForces_, work_;
   std::vector<PointForce> pointForces_;
   std::vector<Held> held_;
-  int nextConstraint_ = 0, version_ = 0;
+  int nextConstraint_ = 0, nextForce_ = 0, version_ = 0;
   bool changed_ = false, forcesChanged_ = true, damped_ = false;
   int tiesVersion_ = -1;  // of constraints, when the contacts were told of them
   ConstraintSolver hard_;
