@@ -13,3 +13,5 @@ pkg_check_modules(hwy REQUIRED QUIET IMPORTED_TARGET libhwy)
 pkg_check_modules(assimp REQUIRED QUIET IMPORTED_TARGET assimp)
 pkg_check_modules(epoxy REQUIRED QUIET IMPORTED_TARGET epoxy)
 pkg_check_modules(egl REQUIRED QUIET IMPORTED_TARGET egl)
+# Lua compiled as C++: its errors are exceptions, so that destructors run.
+pkg_check_modules(lua REQUIRED QUIET IMPORTED_TARGET lua5.4-c++)

@@ -41,6 +41,9 @@ class Behaviour {
 
 using BehaviourPtr = std::unique_ptr<Behaviour>;
 
+// Steps of the length h_s from now until `end_s` is reached; rounding does not make one more.
+int stepsUntil(double end_s, double now_s, double h_s);
+
 // Makers throw Error for numbers out of their ranges.
 
 struct ChaseOptions {
@@ -49,7 +52,7 @@ struct ChaseOptions {
   //     v = v_target + (3/2) d/T − (1/2) (v_point − v_target)
   // with the distance d and the time T that are left: of all ways to be there in time the one with
   // the least ∫|a|² dt, whatever frame it is seen from.
-  std::optional<Vec3> finalVelocity_m_per_s;
+  std::optional<Vec3> finalVelocity_m_per_s = {};
   bool keepControl = false;  // at the end: flies on straight, or stays if it has arrived at rest
 };
 // Along a cubic to where the target will be if it goes on straight; planned anew in every step.
@@ -65,7 +68,7 @@ struct FollowOptions {
   double preroll_s = 0.25;  // [0, 1e6]
   // Simulated time at which the path starts; until its preroll the point is free. By default the
   // preroll begins at once.
-  std::optional<double> onset_s;
+  std::optional<double> onset_s = {};
 };
 // If the path ends at rest, the point is held there, otherwise let go.
 BehaviourPtr makeFollow(PuppetPointId point, KeyframedPath path, const FollowOptions& options = {});

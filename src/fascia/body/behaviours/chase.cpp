@@ -1,5 +1,3 @@
-#include <fascia/body/behaviours/chase.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -69,6 +67,15 @@ class Chase final : public Behaviour {
   std::shared_ptr<CubicSegment> segment_ = std::make_shared<CubicSegment>();
 };
 
+void checkOptions(const ChaseOptions& options) {
+  constexpr double kLongest_s = 1e6;
+  if (!(options.duration_s > 0 && options.duration_s <= kLongest_s))
+    throw Error(std::string("chase: duration_s: found ") + shortNumber(options.duration_s) +
+                ", expected a number in (0, 1e6]");
+  if (options.finalVelocity_m_per_s && !options.finalVelocity_m_per_s->allFinite())
+    throw Error("chase: final velocity: found a number that is not finite");
+}
+
 }  // namespace
 
 int stepsUntil(double end_s, double now_s, double h_s) {
@@ -76,17 +83,8 @@ int stepsUntil(double end_s, double now_s, double h_s) {
   return static_cast<int>(std::clamp(std::ceil((end_s - now_s) / h_s - kRounding), 0.0, 1e9));
 }
 
-void checkChase(const char* what, const ChaseOptions& options) {
-  constexpr double kLongest_s = 1e6;
-  if (!(options.duration_s > 0 && options.duration_s <= kLongest_s))
-    throw Error(std::string(what) + ": duration_s: found " + shortNumber(options.duration_s) +
-                ", expected a number in (0, 1e6]");
-  if (options.finalVelocity_m_per_s && !options.finalVelocity_m_per_s->allFinite())
-    throw Error(std::string(what) + ": final velocity: found a number that is not finite");
-}
-
 BehaviourPtr makeChase(PuppetPointId point, const Target& target, const ChaseOptions& options) {
-  checkChase("chase", options);
+  checkOptions(options);
   return std::make_unique<Chase>(point, target, options);
 }
 

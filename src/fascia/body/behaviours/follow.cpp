@@ -4,7 +4,6 @@
 
 #include <fascia/base/error.h>
 #include <fascia/base/suggest.h>
-#include <fascia/body/behaviours/chase.h>
 #include <fascia/body/closing_attachment.h>
 #include <fascia/body/puppet.h>
 

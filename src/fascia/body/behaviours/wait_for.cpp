@@ -2,7 +2,6 @@
 
 #include <fascia/base/error.h>
 #include <fascia/base/suggest.h>
-#include <fascia/body/behaviours/chase.h>
 #include <fascia/body/puppet.h>
 
 namespace fascia {
