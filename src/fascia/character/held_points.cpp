@@ -36,9 +36,8 @@ std::vector<Vec3> usualHeldPoints(const Solid& solid, const Vec3& joint_solid, b
   const Vec3 toJoint = joint_solid - middle;
   const double size_m = solid.bounds().size().norm();
   const Vec3 axis =
-      toJoint.norm() > 1e-3 * size_m ? Vec3(toJoint.normalized()) : Vec3(Vec3::UnitY());
-  const Vec3 end = middle + kEndShare * wayOut_m(solid, middle, axis) * axis;
-  const Vec3 base = (end - middle).norm() < toJoint.norm() ? end : joint_solid;
+      toJoint.norm() > 1e-3 * size_m ? Vec3(toJoint.normalized()) : Vec3(-Vec3::UnitZ());
+  const Vec3 base = middle + kEndShare * wayOut_m(solid, middle, axis) * axis;
   const Vec3 across = axis.unitOrthogonal(), other = axis.cross(across);
   const int around = bends ? 5 : 3;
   std::vector<Vec3> points;

@@ -56,8 +56,8 @@ class SoftFlesh {
 };
 
 // Where a joint holds a solid if nobody says otherwise, in the solid's frame: a triangle (or five
-// points around a sixth, for bodies that bend) across the end that is nearest to the joint, or
-// through the joint if it lies inside.
+// points around a sixth, for bodies that bend) across the end that is nearest to the joint; its
+// back, -z, if the joint is in the middle.
 std::vector<Vec3> usualHeldPoints(const Solid& solid, const Vec3& joint_solid, bool bends);
 
 }  // namespace fascia
