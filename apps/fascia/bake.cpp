@@ -9,6 +9,7 @@
 #include <fascia/io/gltf_writer.h>
 #include <fascia/io/mdd.h>
 #include <fascia/io/pc2.h>
+#include <fascia/io/scene_file.h>
 #include <fascia/io/stats_writer.h>
 
 #include "commands.h"
@@ -16,6 +17,7 @@
 #include "motion_file.h"
 #include "outputs.h"
 #include "rig_bake.h"
+#include "scene_bake.h"
 #include "simulation_options.h"
 
 namespace fascia {
@@ -27,6 +29,9 @@ constexpr const char* kFooter = R"(Formats, by the ending of the file to write:
   .mdd     point cache for those and Cinema 4D
   .fcache  everything, exactly; 'fascia render' draws it without simulating again
 
+Of a scene (see docs/scenes.md) a .glb has bodies, props and characters; point caches have all
+surfaces as one.
+
 A character on a rig (see 'fascia flesh') becomes its old file with the motion come alive, by --as:
   bones    helper bones and new weights: plays in every engine
   morphs   morph targets on top of the rig's own skinning
@@ -36,6 +41,7 @@ Examples:
   fascia bake examples/penguin.fascia.json -o penguin.glb
   fascia bake fox.fascia.json --motion Gallop -o fox_alive.glb --as bones --helpers 30
   fascia bake human.fascia.json --motion walk.bvh -o walk.glb
+  fascia bake examples/scenes/sky-hook.fascia.json --seed 7 -o sky-hook.glb -o sky-hook.fcache
   fascia bake examples/penguin.fascia.json --motion hop -o hop.glb -o hop.fcache --stats hop.json
   fascia bake examples/penguin.fascia.json --grid 128x64 --fps 30 -o fine.pc2)";
 
@@ -82,46 +88,34 @@ void writeOutput(const Character& character, const Recording& recording, const s
   written.push_back(path);
 }
 
-// No file may be written twice, or over what the character is made of.
-void checkFiles(const Character& character, const std::string& motionFile,
-                const BakeOptions& options) {
-  namespace fs = std::filesystem;
-  const auto placeOf = [](const fs::path& path) {
-    return fs::weakly_canonical(fs::absolute(path));
-  };
-  std::vector<fs::path> taken{placeOf(options.character)};
+// What the character is made of.
+std::vector<std::string> inputsOf(const Character& character, const std::string& motionFile,
+                                  const BakeOptions& options) {
+  std::vector<std::string> out{options.character};
   if (const std::optional<RigDef>& rig = character.def().rig)
-    taken.push_back(placeOf(fs::path(options.character).parent_path() / rig->file));
-  if (!motionFile.empty()) taken.push_back(placeOf(motionFile));
-  const std::size_t inputs = taken.size();
-  std::vector<std::string> files{options.stats};
-  for (const std::string& output : options.outputs)
-    for (const std::string& file : filesOf(character, options.rig, output)) files.push_back(file);
-  for (const std::string& file : files) {
-    if (file.empty()) continue;
-    const auto found = std::find(taken.begin(), taken.end(), placeOf(file));
-    if (found != taken.end()) {
-      Issue issue;
-      issue.where.file = file;
-      issue.message = found - taken.begin() < static_cast<std::ptrdiff_t>(inputs)
-                          ? "is what the character is made of, and would be overwritten"
-                          : "would be written twice";
-      issue.hint = "choose another name";
-      throw Error(std::move(issue));
-    }
-    taken.push_back(placeOf(file));
-  }
+    out.push_back((std::filesystem::path(options.character).parent_path() / rig->file).string());
+  if (!motionFile.empty()) out.push_back(motionFile);
+  return out;
 }
 
 void bake(BakeOptions& options, const Console& console) {
   checkFolders(options.outputs);
   checkFolders({options.stats});
   const ThreadLimit threads(options.simulation.threads);
+  if (isSceneFile(options.character)) {
+    if (!options.rig.given().empty())
+      throw Error("--as and its options are for characters on a rig");
+    bakeScene({options.character, options.outputs, options.stats, options.simulation}, console);
+    return;
+  }
   const std::string motionFile =
       isMotionFile(options.simulation.motion) ? options.simulation.motion : std::string();
   const Character character = prepareCharacter(options.character, options.simulation, console);
   checkRigBake(character, options.rig, options.outputs);
-  checkFiles(character, motionFile, options);
+  std::vector<std::string> files;
+  for (const std::string& output : options.outputs)
+    for (const std::string& file : filesOf(character, options.rig, output)) files.push_back(file);
+  checkOverwriting(inputsOf(character, motionFile, options), files, options.stats);
   const Recording recording =
       simulate(character, options.simulation.recordOptions(character), console);
   std::vector<std::string> written;
@@ -142,7 +136,7 @@ void bake(BakeOptions& options, const Console& console) {
 void addBake(CLI::App& program, Console& console) {
   CLI::App& command = *program.add_subcommand("bake", "Simulate a motion and save the animation");
   const auto options = std::make_shared<BakeOptions>();
-  command.add_option("CHARACTER", options->character, "A *.fascia.json file")
+  command.add_option("CHARACTER", options->character, "A *.fascia.json file: a character or scene")
       ->required()
       ->type_name("");
   command.add_option("-o,--output", options->outputs, "File to write; may be given several times")

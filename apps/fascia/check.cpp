@@ -2,6 +2,9 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/io/character_file.h>
+#include <fascia/io/scene_file.h>
+#include <fascia/render/camera.h>
+#include <fascia/world/performance.h>
 
 #include "commands.h"
 #include "console.h"
@@ -16,11 +19,22 @@ Examples:
   fascia check examples/penguin.fascia.json
   fascia check --json mine.fascia.json yours.fascia.json)";
 
+// Builds what the file holds; a scene is started too: its script is read then.
+void checkFile(const std::string& path) {
+  if (!isSceneFile(path)) {
+    loadCharacter(path);
+    return;
+  }
+  const Stage stage = loadStage(path);
+  if (!stage.def().view.camera.empty()) parseCamera(stage.def().view.camera);
+  const Performance performance(stage);
+}
+
 void check(const std::vector<std::string>& paths, const Console& console) {
   std::vector<Issue> issues;
   for (const std::string& path : paths) {
     try {
-      loadCharacter(path);
+      checkFile(path);
       console.say(path + ": ok");
     } catch (const Error& error) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());

@@ -46,6 +46,31 @@ void checkFolders(const std::vector<std::string>& paths) {
   if (!issues.empty()) throw Error(std::move(issues));
 }
 
+void checkOverwriting(const std::vector<std::string>& inputs,
+                      const std::vector<std::string>& outputs, const std::string& stats) {
+  const auto placeOf = [](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path));
+  };
+  std::vector<fs::path> taken;
+  for (const std::string& input : inputs) taken.push_back(placeOf(input));
+  std::vector<std::string> files{stats};
+  files.insert(files.end(), outputs.begin(), outputs.end());
+  for (const std::string& file : files) {
+    if (file.empty()) continue;
+    const auto found = std::find(taken.begin(), taken.end(), placeOf(file));
+    if (found != taken.end()) {
+      const bool input = found - taken.begin() < static_cast<std::ptrdiff_t>(inputs.size());
+      Issue issue;
+      issue.where.file = file;
+      issue.message =
+          input ? "is read for this bake, and would be overwritten" : "would be written twice";
+      issue.hint = "choose another name";
+      throw Error(std::move(issue));
+    }
+    taken.push_back(placeOf(file));
+  }
+}
+
 void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
                      const Console& console, const Json::Object& more) {
   const double ratio = recording.wall_s > 0 ? recording.simulated_s / recording.wall_s : 0;

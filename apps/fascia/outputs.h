@@ -19,6 +19,10 @@ std::function<std::string(const std::string&)> endsIn(const std::vector<std::str
 // are skipped.
 void checkFolders(const std::vector<std::string>& paths);
 
+// Throws Error if a file would be written over an input, or twice.
+void checkOverwriting(const std::vector<std::string>& inputs,
+                      const std::vector<std::string>& outputs, const std::string& stats);
+
 // A line about the simulation for a person, the whole statistics for a machine; `more` joins the
 // machine's answer.
 void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,

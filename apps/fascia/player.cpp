@@ -19,20 +19,18 @@ bool hasRig(const Character& character) {
   return character.def().rig && character.def().rig->model;
 }
 
-const Recording::Frame& frameAt(const Recording& recording, double time_s) {
-  const std::vector<Recording::Frame>& frames = recording.frames;
-  if (frames.empty()) throw Error("there are no frames to draw");
-  const double halfFrame_s = 0.5 / recording.frame_rate_hz;
-  if (time_s < frames.front().time_s - halfFrame_s || time_s > frames.back().time_s + halfFrame_s)
-    throw Error(fmt::format("there is no frame at {} s: they go from {:g} s to {:g} s", time_s,
-                            frames.front().time_s, frames.back().time_s));
-  const auto closer = [time_s](const Recording::Frame& a, const Recording::Frame& b) {
-    return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
-  };
-  return *std::min_element(frames.begin(), frames.end(), closer);
-}
-
 }  // namespace
+
+std::size_t closestFrame(std::span<const double> times_s, double frameRate_hz, double time_s) {
+  if (times_s.empty()) throw Error("there are no frames to draw");
+  const double halfFrame_s = 0.5 / frameRate_hz;
+  if (time_s < times_s.front() - halfFrame_s || time_s > times_s.back() + halfFrame_s)
+    throw Error(fmt::format("there is no frame at {} s: they go from {:g} s to {:g} s", time_s,
+                            times_s.front(), times_s.back()));
+  const auto closest = std::ranges::min_element(
+      times_s, {}, [time_s](double frame_s) { return std::abs(frame_s - time_s); });
+  return static_cast<std::size_t>(closest - times_s.begin());
+}
 
 Player::Player(const Character& character, const Recording& recording)
     : character_(character),
@@ -40,13 +38,15 @@ Player::Player(const Character& character, const Recording& recording)
       motion_(recording.motion.empty() ? -1 : character.findMotion(recording.motion)),
       skin_(recording.skin),
       normals_(recording.skin) {
+  for (const Recording::Frame& frame : recording.frames) times_s_.push_back(frame.time_s);
   if (!hasRig(character)) return;
   creases_.emplace(*character.def().rig->model);
   blended_.emplace(character);
 }
 
 void Player::seek(double time_s) {
-  const Recording::Frame& frame = frameAt(recording_, time_s);
+  const Recording::Frame& frame =
+      recording_.frames[closestFrame(times_s_, recording_.frame_rate_hz, time_s)];
   state_.time_s = frame.time_s;
   if (const auto& soft = character_.softFlesh(); soft && !frame.soft_shapes.empty()) {
     if (frame.soft_shapes.size() != soft->shapeSize())

@@ -1,15 +1,20 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <fascia/character/character.h>
 #include <fascia/character/recording.h>
-#include <fascia/io/welded_normals.h>
+#include <fascia/geometry/welded_normals.h>
 #include <fascia/render/blended_skin.h>
 #include <fascia/render/camera.h>
 #include <fascia/render/crease_normals.h>
 
 namespace fascia {
+
+// The frame closest to a time. Throws Error if the time lies outside of them.
+std::size_t closestFrame(std::span<const double> times_s, double frameRate_hz, double time_s);
 
 // Shows a recording again: the character's layers and its skin at any recorded moment, without
 // simulating. Both must outlive it.
@@ -26,6 +31,7 @@ class Player {
  private:
   const Character& character_;
   const Recording& recording_;
+  std::vector<double> times_s_;  // of the frames
   int motion_;
   CharacterState state_;
   TriangleMesh skin_;

@@ -16,14 +16,14 @@ constexpr const char* kClearLine = "\r\x1b[K";
 
 }  // namespace
 
-Progress::Progress(const Console& console, std::string what)
+ProgressBar::ProgressBar(const Console& console, std::string what)
     : what_(std::move(what)), visible_(console.showsProgress()) {}
 
-Progress::~Progress() {
+ProgressBar::~ProgressBar() {
   if (visible_) std::fputs(kClearLine, stderr);
 }
 
-bool Progress::update(double fraction) {
+bool ProgressBar::update(double fraction) {
   const Clock::time_point now = Clock::now();
   if (visible_ && now - drawn_ >= kRedraw) {
     drawn_ = now;

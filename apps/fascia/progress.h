@@ -8,12 +8,12 @@
 namespace fascia {
 
 // A bar with the time left, on a terminal only; gone when the work is done.
-class Progress {
+class ProgressBar {
  public:
-  Progress(const Console& console, std::string what);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  ProgressBar(const Console& console, std::string what);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
 
   // fraction in [0, 1]. False when the person asked to stop.
   bool update(double fraction);

@@ -89,7 +89,7 @@ RigBakeReport writeRigBake(const Character& character, const Recording& recordin
   if (options.as == "cache") return writeRigAsCache(clip, path);
   if (options.as == "morphs")
     return writeRigAsMorphs(clip, MorphOptions{.targets = options.targets}, path);
-  Progress progress(console, "fitting bones");
+  ProgressBar progress(console, "fitting bones");
   DecompositionOptions fit;
   fit.helperBones = options.helpers;
   fit.influences = options.influences;

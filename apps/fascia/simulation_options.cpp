@@ -53,6 +53,9 @@ void SimulationOptions::addTo(CLI::App& command) {
   command.add_option("--step", step_s, "Time step; 0 = chosen (default: as in the file)")
       ->type_name("SECONDS")
       ->check(numberIn(0, 1.0 / 12));
+  command.add_option("--seed", seed, "Of a scene: another start, within what its file allows")
+      ->type_name("N")
+      ->check(numberIn(0, 1e15));
   command.add_option("--threads", threads, "Threads to use; 0 = all. The result is the same")
       ->type_name("N")
       ->check(numberIn(0, 1024));
@@ -95,6 +98,7 @@ Character prepareCharacter(const std::string& path, SimulationOptions& options,
                            const Console& console) {
   if (!options.joint_map.empty() && !isMotionFile(options.motion))
     throw Error("--joint-map belongs to a motion from a file, such as --motion walk.bvh");
+  if (options.seed != 0) throw Error("--seed is for scenes; a character has nothing to scatter");
   CharacterFile file = readCharacterFile(path);
   if (isMotionFile(options.motion)) {
     if (!file.def.rig)
@@ -123,7 +127,7 @@ int chooseMotion(const Character& character, const std::string& name) {
 }
 
 Recording simulate(const Character& character, RecordOptions options, const Console& console) {
-  Progress progress(console, "simulating");
+  ProgressBar progress(console, "simulating");
   options.progress = [&](double fraction) {
     if (!progress.update(fraction)) throw Interrupted{};
     return true;

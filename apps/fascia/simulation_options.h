@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +22,7 @@ struct SimulationOptions {
   double step_s = -1;        // negative = as in the file
   std::string grid;          // "COLUMNSxROWS"; empty = as in the file
   int threads = 0;           // 0 = all the machine has
+  std::uint64_t seed = 0;    // of a scene: 0 = the start as in the file, others scatter it
 
   void addTo(CLI::App& command);  // all but the frame rate, which commands name differently
   BuildOptions buildOptions() const;

@@ -44,7 +44,7 @@ TEST_F(CliRig, RigOutsideOfTheFolderIsRefusedWithALine) {
     const Outcome outcome = run({"check", "tube.fascia.json"});
     EXPECT_EQ(outcome.exitCode, 1) << name;
     EXPECT_THAT(outcome.err, HasSubstr("tube.fascia.json:4: /rig/file: the rig must be named by a "
-                                       "path inside the character's folder"));
+                                       "path inside this file's folder"));
   }
 }
 
@@ -54,7 +54,7 @@ TEST_F(CliRig, LinkOutOfTheFolderIsRefused) {
   std::filesystem::create_symlink(folder_ / "tube.gltf", folder_ / "inner/tube.gltf");
   const Outcome outcome = run({"check", "inner/tube.fascia.json"});
   EXPECT_EQ(outcome.exitCode, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("leads out of the character's folder"));
+  EXPECT_THAT(outcome.err, HasSubstr("leads out of this file's folder"));
 }
 
 TEST_F(CliRig, MissingAndBrokenRigsAreNamed) {

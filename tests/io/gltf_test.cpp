@@ -6,11 +6,11 @@
 // Declarations only: the functions are in the library.
 #include <tiny_gltf.h>
 
+#include <fascia/geometry/welded_normals.h>
 #include <fascia/io/child_process.h>
 #include <fascia/io/file.h>
 #include <fascia/io/gltf_writer.h>
 #include <fascia/io/keep_frames.h>
-#include <fascia/io/welded_normals.h>
 
 #include "sample.h"
 

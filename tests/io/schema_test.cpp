@@ -10,6 +10,7 @@
 #include <valijson/validator.hpp>
 
 #include <fascia/io/file.h>
+#include <fascia/io/scene_file.h>
 
 #include "sample.h"
 
@@ -20,24 +21,40 @@ namespace fs = std::filesystem;
 
 const std::string kRoot = FASCIA_SOURCE_DIR;
 
-bool schemaAccepts(const std::string& text) {
-  static const valijson::Schema* const kSchema = [] {
-    const nlohmann::json document = nlohmann::json::parse(characterSchema());
-    auto* schema = new valijson::Schema;
-    valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(document),
-                                            *schema);
-    return schema;
-  }();
+const valijson::Schema* parsed(const std::string& text) {
   const nlohmann::json document = nlohmann::json::parse(text);
-  valijson::Validator validator;
-  return validator.validate(*kSchema, valijson::adapters::NlohmannJsonAdapter(document), nullptr);
+  auto* schema = new valijson::Schema;
+  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(document),
+                                          *schema);
+  return schema;
 }
 
-TEST(Schema, PublishedFileIsTheOneThatTheReaderMakes) {
-  const std::string path = kRoot + "/schema/fascia-1.schema.json";
-  if (std::getenv("FASCIA_UPDATE_SCHEMA")) writeFileWhole(path, characterSchema());
-  EXPECT_EQ(readFile(path, 1 << 20), characterSchema())
+bool accepts(const valijson::Schema& schema, const std::string& text) {
+  const nlohmann::json document = nlohmann::json::parse(text);
+  valijson::Validator validator;
+  return validator.validate(schema, valijson::adapters::NlohmannJsonAdapter(document), nullptr);
+}
+
+bool schemaAccepts(const std::string& text) {
+  static const valijson::Schema* const kSchema = parsed(characterSchema());
+  return accepts(*kSchema, text);
+}
+
+bool sceneSchemaAccepts(const std::string& text) {
+  static const valijson::Schema* const kSchema = parsed(sceneSchema());
+  return accepts(*kSchema, text);
+}
+
+void expectPublished(const std::string& name, const std::string& schema) {
+  const std::string path = kRoot + "/schema/" + name;
+  if (std::getenv("FASCIA_UPDATE_SCHEMA")) writeFileWhole(path, schema);
+  EXPECT_EQ(readFile(path, 1 << 20), schema)
       << "run this test once with FASCIA_UPDATE_SCHEMA=1 to write it anew";
+}
+
+TEST(Schema, PublishedFilesAreThoseThatTheReadersMake) {
+  expectPublished("fascia-1.schema.json", characterSchema());
+  expectPublished("fascia-scene-1.schema.json", sceneSchema());
 }
 
 TEST(Schema, AcceptsTheSamples) {
@@ -51,6 +68,11 @@ TEST(Schema, AcceptsEveryExampleThatTheReaderAccepts) {
   for (const auto& entry : fs::recursive_directory_iterator(kRoot + "/examples")) {
     const std::string path = entry.path().string();
     if (!path.ends_with(".fascia.json")) continue;
+    if (isSceneFile(path)) {
+      EXPECT_NO_THROW(loadStage(path)) << path;
+      EXPECT_TRUE(sceneSchemaAccepts(readFile(path, 1 << 26))) << path;
+      continue;
+    }
     EXPECT_NO_THROW(readCharacterFile(path)) << path;
     EXPECT_TRUE(schemaAccepts(readFile(path, 1 << 26))) << path;
   }

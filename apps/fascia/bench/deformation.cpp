@@ -145,12 +145,13 @@ class Contest {
         fmt::format("\n{} bent to {:.0f}° (turned by {:.0f}°)", joint, angle_deg, turn_deg));
     console_.say(fmt::format("{}  volume lost (%)", kHeadings));
     console_.say(fmt::format("{}    total at rest", kColumns));
-    const Stage stage = makeStage(model_, bendMotion(model_, hinge, radians(angle_deg)), 2);
+    const ContestStage stage =
+        makeContestStage(model_, bendMotion(model_, hinge, radians(angle_deg)), 2);
     std::optional<BendPictures> pictures;
     if (!options_.pictures.empty()) pictures.emplace(model_, hinge);
     Json::List rows;
     for (const auto& contender : contenders_) {
-      const Performance performance = contender->perform(stage, console_);
+      const ContestFrames performance = contender->perform(stage, console_);
       const BendScore score = judge_.judgeBend(hinge, stage, performance);
       console_.say(
           fmt::format("{} {:8.1f} {:7.1f}",
@@ -169,13 +170,13 @@ class Contest {
   }
 
   Json clip(const SampledMotion& motion) {
-    const Stage stage = makeStage(model_, motion, options_.seconds);
+    const ContestStage stage = makeContestStage(model_, motion, options_.seconds);
     console_.say(fmt::format("\n{}, {} frames", motion.name, stage.motions.size()));
     console_.say(fmt::format("{}   jitter        ms", kHeadings));
     console_.say(fmt::format("{}     (µm)    /frame", kColumns));
     Json::List rows;
     for (const auto& contender : contenders_) {
-      const Performance performance = contender->perform(stage, console_);
+      const ContestFrames performance = contender->perform(stage, console_);
       const ClipScore score = judge_.judgeClip(stage, performance);
       console_.say(
           fmt::format("{} {:8.1f} {:9.3f}",

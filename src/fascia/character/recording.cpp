@@ -5,32 +5,49 @@
 
 namespace fascia {
 
-Recording record(const Character& character, const RecordOptions& options) {
-  const CharacterDef& def = character.def();
+Recording startRecording(const Character& character, int motion, double frame_rate_hz) {
   Recording out;
-  double duration = options.duration_s;
-  if (options.motion >= 0) {
-    const BoundClip& clip = character.motion(static_cast<std::size_t>(options.motion));
-    out.motion = clip.name;
-    out.loop = clip.loop;
-    if (duration <= 0) duration = clip.duration_s;
+  out.frame_rate_hz = frame_rate_hz;
+  if (motion < 0) return out;
+  const BoundClip& clip = character.motion(static_cast<std::size_t>(motion));
+  out.motion = clip.name;
+  out.loop = clip.loop;
+  return out;
+}
+
+void keepFrame(const Character& character, const CharacterState& state, bool kept, Recording& out) {
+  if (character.skin()) {
+    skinSurface(*character.skin(), state.skin, out.skin);
+    measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
+                out.stats);
   }
-  out.frame_rate_hz =
-      options.frame_rate_hz > 0 ? options.frame_rate_hz : def.simulation.frame_rate_hz;
-  const double dt = 1 / out.frame_rate_hz;
-  const auto frames = static_cast<std::int64_t>(std::llround(duration * out.frame_rate_hz));
+  if (!kept) return;
+  out.frames.push_back({state.time_s, state.posture.values, out.skin.positions, {}});
+  if (const auto& soft = character.softFlesh())
+    out.frames.back().soft_shapes = soft->shapes(state.bodies);
+}
+
+void finishRecording(const Character& character, const CharacterState& last, Recording& out) {
+  if (character.skin() && !out.frames.empty()) {
+    out.skin.positions = out.frames.front().skin_m;
+    computeNormals(out.skin.positions, out.skin.triangles, out.skin.normals);
+  }
+  out.state_hash = hashOf(character, last);
+}
+
+Recording record(const Character& character, const RecordOptions& options) {
+  const double frameRate_hz =
+      options.frame_rate_hz > 0 ? options.frame_rate_hz : character.def().simulation.frame_rate_hz;
+  Recording out = startRecording(character, options.motion, frameRate_hz);
+  double duration = options.duration_s;
+  if (options.motion >= 0 && duration <= 0)
+    duration = character.motion(static_cast<std::size_t>(options.motion)).duration_s;
+  const double dt = 1 / frameRate_hz;
+  const auto frames = static_cast<std::int64_t>(std::llround(duration * frameRate_hz));
 
   CharacterState state = initialState(character, options.motion);
   const auto keep = [&] {
-    if (character.skin()) {
-      skinSurface(*character.skin(), state.skin, out.skin);
-      measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
-                  out.stats);
-    }
-    if (state.time_s + 0.5 * dt >= options.start_s)
-      out.frames.push_back({state.time_s, state.posture.values, out.skin.positions,
-                            character.softFlesh() ? character.softFlesh()->shapes(state.bodies)
-                                                  : std::vector<double>{}});
+    keepFrame(character, state, state.time_s + 0.5 * dt >= options.start_s, out);
   };
   keep();
   for (std::int64_t i = 0; i < frames; ++i) {
@@ -43,11 +60,7 @@ Recording record(const Character& character, const RecordOptions& options) {
         !options.progress(static_cast<double>(i + 1) / static_cast<double>(frames)))
       throw Error("stopped");
   }
-  if (character.skin() && !out.frames.empty()) {
-    out.skin.positions = out.frames.front().skin_m;
-    computeNormals(out.skin.positions, out.skin.triangles, out.skin.normals);
-  }
-  out.state_hash = hashOf(character, state);
+  finishRecording(character, state, out);
   return out;
 }
 

@@ -26,6 +26,13 @@ struct Recording {
   std::uint64_t state_hash = 0;  // of the last CharacterState
 };
 
+// The parts of recording a run that somebody else takes through time: a recording of a motion (-1:
+// the rest posture) without frames; the state as its next frame, measured (and kept unless `kept`
+// is false); what is known at the end.
+Recording startRecording(const Character& character, int motion, double frame_rate_hz);
+void keepFrame(const Character& character, const CharacterState& state, bool kept, Recording& out);
+void finishRecording(const Character& character, const CharacterState& last, Recording& out);
+
 struct RecordOptions {
   int motion = -1;           // index; -1 = the rest posture
   double frame_rate_hz = 0;  // 0 = as in the file

@@ -1,6 +1,7 @@
 #include <fascia/io/cache.h>
 
 #include <cmath>
+#include <functional>
 
 #include <fascia/io/byte_stream.h>
 #include <fascia/io/character_file.h>
@@ -110,8 +111,11 @@ bool isCache(std::string_view bytes) {
   return bytes.starts_with(kMagic);
 }
 
-void writeCache(const CharacterDef& def, const Recording& recording, const std::string& path,
-                const Texture* texture) {
+namespace {
+
+// Everything in its order, piece by piece.
+void putCache(const CharacterDef& def, const Recording& recording, const Texture* texture,
+              const std::function<void(std::string_view)>& put) {
   const std::size_t postureSize = valueCount(def);
   if (def.rig && !def.rig->model) throw Error("the character's rig was not read from its file");
   ByteWriter head;
@@ -127,8 +131,7 @@ void writeCache(const CharacterDef& def, const Recording& recording, const std::
   head.value(static_cast<std::uint8_t>(recording.loop));
   writeMesh(head, recording.skin);
   head.value(static_cast<std::uint64_t>(recording.frames.size()));
-  WholeFile file(path);
-  file.write(head.bytes);
+  put(head.bytes);
   for (const Recording::Frame& frame : recording.frames) {
     const bool skin = !frame.skin_m.empty();
     if (frame.posture.size() != postureSize || frame.soft_shapes.size() != shapes ||
@@ -141,15 +144,30 @@ void writeCache(const CharacterDef& def, const Recording& recording, const std::
     out.array(frame.soft_shapes.data(), frame.soft_shapes.size());
     out.value(static_cast<std::uint8_t>(skin));
     out.array(frame.skin_m.data(), frame.skin_m.size());
-    file.write(out.bytes);
+    put(out.bytes);
   }
   ByteWriter tail;
   eachStat(recording.stats, [&](const auto& value) { tail.value(value); });
   tail.value(recording.wall_s);
   tail.value(recording.simulated_s);
   tail.value(recording.state_hash);
-  file.write(tail.bytes);
+  put(tail.bytes);
+}
+
+}  // namespace
+
+void writeCache(const CharacterDef& def, const Recording& recording, const std::string& path,
+                const Texture* texture) {
+  WholeFile file(path);
+  putCache(def, recording, texture, [&](std::string_view bytes) { file.write(bytes); });
   file.commit();
+}
+
+std::string cacheBytes(const CharacterDef& def, const Recording& recording,
+                       const Texture* texture) {
+  std::string out;
+  putCache(def, recording, texture, [&](std::string_view bytes) { out += bytes; });
+  return out;
 }
 
 Cache parseCache(std::string_view bytes, const std::string& file) {
@@ -196,8 +214,12 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   return cache;
 }
 
+std::string readCacheBytes(const std::string& path) {
+  return readFile(path, kMaxFileBytes);
+}
+
 Cache readCache(const std::string& path) {
-  return parseCache(readFile(path, kMaxFileBytes), path);
+  return parseCache(readCacheBytes(path), path);
 }
 
 }  // namespace fascia

@@ -19,7 +19,10 @@ struct Cache {
 // from the character's folder unless one is given.
 void writeCache(const CharacterDef& def, const Recording& recording, const std::string& path,
                 const Texture* texture = nullptr);
+std::string cacheBytes(const CharacterDef& def, const Recording& recording,
+                       const Texture* texture = nullptr);
 Cache readCache(const std::string& path);
+std::string readCacheBytes(const std::string& path);  // the file, of whatever kind of cache
 Cache parseCache(std::string_view bytes, const std::string& file = {});
 bool isCache(std::string_view bytes);  // by its first bytes
 

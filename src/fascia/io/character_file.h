@@ -8,9 +8,6 @@
 
 namespace fascia {
 
-// The version of the format that we write, and the newest that we read.
-inline constexpr int kCharacterFormat = 1;
-
 // A character file as read: the definition, and where its parts stand.
 struct CharacterFile {
   CharacterDef def;

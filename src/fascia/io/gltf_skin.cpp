@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include <fascia/geometry/welded_normals.h>
 #include <fascia/io/keep_frames.h>
-#include <fascia/io/welded_normals.h>
 
 namespace fascia {
 namespace {

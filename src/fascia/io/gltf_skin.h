@@ -4,7 +4,7 @@
 
 #include <fascia/character/recording.h>
 #include <fascia/io/glb_builder.h>
-#include <fascia/io/gltf_writer.h>
+#include <fascia/io/texture.h>
 
 namespace fascia {
 

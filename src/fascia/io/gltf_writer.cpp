@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include <fascia/geometry/welded_normals.h>
 #include <fascia/io/file.h>
 #include <fascia/io/gltf_skin.h>
-#include <fascia/io/keep_frames.h>
-#include <fascia/io/welded_normals.h>
+#include <fascia/io/gltf_tracks.h>
 #include <fascia/skeleton/euler.h>
 
 namespace fascia {
@@ -13,18 +13,8 @@ namespace {
 
 using GltfJson = GlbBuilder::Json;
 
-// A joint's place in its parent over time.
-struct JointTrack {
-  std::vector<Eigen::Vector3f> translations;
-  std::vector<Eigen::Vector4f> rotations;  // quaternions x, y, z, w; neighbours on one side
-};
-
-Eigen::Vector4f quaternion(const Mat3& rotation) {
-  return Quat(rotation).normalized().coeffs().cast<float>();
-}
-
-std::vector<JointTrack> jointTracks(const Skeleton& skeleton, const Recording& recording) {
-  std::vector<JointTrack> tracks(skeleton.jointCount());
+std::vector<PlaceTrack> jointTracks(const Skeleton& skeleton, const Recording& recording) {
+  std::vector<PlaceTrack> tracks(skeleton.jointCount());
   Posture posture = skeleton.restPosture();
   PosedSkeleton posed;
   for (const Recording::Frame& frame : recording.frames) {
@@ -35,67 +25,29 @@ std::vector<JointTrack> jointTracks(const Skeleton& skeleton, const Recording& r
       const Transform local =
           parent.valid() ? posed.joint_world[parent.index()].inverse() * posed.joint_world[j]
                          : posed.joint_world[j];
-      Eigen::Vector4f rotation = quaternion(local.rotation);
-      std::vector<Eigen::Vector4f>& rotations = tracks[j].rotations;
-      if (!rotations.empty() && rotations.back().dot(rotation) < 0) rotation = -rotation;
-      rotations.push_back(rotation);
-      tracks[j].translations.push_back(local.translation_m.cast<float>());
+      tracks[j].add(local);
     }
   }
   return tracks;
 }
 
-GltfJson jointNode(const std::string& name, const JointTrack& track) {
-  const Eigen::Vector3f& t = track.translations.front();
-  const Eigen::Vector4f& r = track.rotations.front();
-  return {{"name", name},
-          {"translation", {t.x(), t.y(), t.z()}},
-          {"rotation", {r.x(), r.y(), r.z(), r.w()}}};
-}
-
-// Drops values that lie between their neighbours within `tolerance` (metres, or about radians / 2).
-template <class Value, class AddValues>
-void addTrack(const std::vector<float>& times, const std::vector<Value>& values, float tolerance,
-              std::size_t node, const char* path, GlbBuilder& glb, GltfAnimation& animation,
-              const AddValues& addValues) {
-  const std::vector<std::size_t> kept =
-      keepFrames(values.size(), [&](std::size_t a, std::size_t b) {
-        for (std::size_t f = a + 1; f < b; ++f) {
-          const float s = (times[f] - times[a]) / (times[b] - times[a]);
-          Value blend = values[a] + s * (values[b] - values[a]);
-          if constexpr (Value::RowsAtCompileTime == 4) blend.normalize();
-          if (!((blend - values[f]).norm() <= tolerance)) return false;
-        }
-        return true;
-      });
-  bool moves = false;
-  std::vector<float> keptTimes;
-  std::vector<Value> keptValues;
-  for (const std::size_t k : kept) {
-    keptTimes.push_back(times[k]);
-    keptValues.push_back(values[k]);
-    moves = moves || values[k] != values[0];
-  }
-  if (!moves) return;
-  const std::size_t input = glb.addScalars(keptTimes, true);
-  animation.add(input, addValues(keptValues), node, path);
-}
-
-class GlbWriter {
+class CharacterNodes {
  public:
-  GlbWriter(const Character& character, const Recording& recording, const GlbOptions& options)
-      : character_(character), recording_(recording), options_(options) {}
+  CharacterNodes(const Character& character, const Recording& recording, const GlbOptions& options,
+                 GlbBuilder& glb, GltfAnimation& animation)
+      : character_(character),
+        recording_(recording),
+        options_(options),
+        glb_(glb),
+        animation_(animation) {}
 
-  GlbReport write(const std::string& path) {
+  GlbCharacter add() {
     check();
     addJoints();
     if (options_.ornaments) addSolids(character_.ornaments());
     if (options_.solids) addSolids(character_.flesh());
     addSkin();
-    finishScene();
-    const std::string bytes = glb_.finish();
-    writeFileWhole(path, bytes);
-    return {kept_.size(), bytes.size()};
+    return {std::move(roots_), kept_.size()};
   }
 
  private:
@@ -126,26 +78,20 @@ class GlbWriter {
     for (const Recording::Frame& frame : recording_.frames) {
       times.push_back(static_cast<float>(frame.time_s - recording_.frames.front().time_s));
     }
-    const std::vector<JointTrack> tracks = jointTracks(skeleton, recording_);
+    const std::vector<PlaceTrack> tracks = jointTracks(skeleton, recording_);
     for (std::size_t j = 0; j < tracks.size(); ++j) {
       const JointId id(static_cast<std::int64_t>(j));
-      addNode(jointNode(skeleton.joint(id).name, tracks[j]), skeleton.parent(id));
+      jointNodes_.push_back(
+          addNode(placeNode(skeleton.joint(id).name, tracks[j]), skeleton.parent(id)));
     }
-    constexpr float kMetres = 1e-5f, kHalfRadians = 1e-4f;
-    for (std::size_t j = 0; j < tracks.size(); ++j) {
-      addTrack(times, tracks[j].translations, kMetres, j, "translation", glb_, animation_,
-               [&](const auto& values) {
-                 return glb_.addVectors(values, false, GlbBuilder::Target::none);
-               });
-      addTrack(times, tracks[j].rotations, kHalfRadians, j, "rotation", glb_, animation_,
-               [&](const auto& values) { return glb_.addQuaternions(values); });
-    }
+    for (std::size_t j = 0; j < tracks.size(); ++j)
+      addTracks(times, tracks[j], jointNodes_[j], glb_, animation_);
   }
 
   std::size_t addNode(GltfJson node, JointId parent) {
     const std::size_t index = glb_.add("nodes", std::move(node));
     if (parent.valid()) {
-      glb_.root["nodes"][parent.index()]["children"].push_back(index);
+      glb_.root["nodes"][jointNodes_[parent.index()]]["children"].push_back(index);
     } else {
       roots_.push_back(index);
     }
@@ -169,7 +115,7 @@ class GlbWriter {
       const std::size_t index =
           glb_.add("meshes", {{"name", def.name}, {"primitives", GltfJson::array({primitive})}});
       const Vec3& t = def.position_m;
-      const Eigen::Vector4f r = quaternion(rotationZyx(def.orientation_rad));
+      const Eigen::Vector4f r = gltfQuaternion(rotationZyx(def.orientation_rad));
       addNode({{"name", def.name},
                {"mesh", index},
                {"translation", {t.x(), t.y(), t.z()}},
@@ -200,31 +146,45 @@ class GlbWriter {
     addSkinAnimation(recording_, kept_, node, glb_, animation_);
   }
 
-  void finishScene() {
-    GltfJson scene = {{"nodes", roots_}};
-    if (!character_.def().name.empty()) scene["name"] = character_.def().name;
-    glb_.add("scenes", std::move(scene));
-    glb_.root["scene"] = 0;
-    if (animation_.channels.empty()) return;
-    glb_.add("animations", {{"name", recording_.motion.empty() ? "rest" : recording_.motion},
-                            {"samplers", animation_.samplers},
-                            {"channels", animation_.channels}});
-  }
-
   const Character& character_;
   const Recording& recording_;
   const GlbOptions& options_;
-  GlbBuilder glb_;
-  GltfAnimation animation_;
-  std::vector<std::size_t> roots_, kept_;
+  GlbBuilder& glb_;
+  GltfAnimation& animation_;
+  std::vector<std::size_t> jointNodes_, roots_, kept_;
   std::vector<std::pair<GltfJson, std::size_t>> materials_;
 };
 
 }  // namespace
 
+GlbCharacter addCharacter(const Character& character, const Recording& recording,
+                          const GlbOptions& options, GlbBuilder& glb, GltfAnimation& animation) {
+  return CharacterNodes(character, recording, options, glb, animation).add();
+}
+
+std::string finishGlb(const std::string& name, const std::string& motion,
+                      const std::vector<std::size_t>& roots, GltfAnimation animation,
+                      GlbBuilder& glb) {
+  GltfJson scene = {{"nodes", roots}};
+  if (!name.empty()) scene["name"] = name;
+  glb.add("scenes", std::move(scene));
+  glb.root["scene"] = 0;
+  if (!animation.channels.empty())
+    glb.add("animations", {{"name", motion.empty() ? "rest" : motion},
+                           {"samplers", std::move(animation.samplers)},
+                           {"channels", std::move(animation.channels)}});
+  return glb.finish();
+}
+
 GlbReport writeGlb(const Character& character, const Recording& recording, const std::string& path,
                    const GlbOptions& options) {
-  return GlbWriter(character, recording, options).write(path);
+  GlbBuilder glb;
+  GltfAnimation animation;
+  const GlbCharacter added = addCharacter(character, recording, options, glb, animation);
+  const std::string bytes =
+      finishGlb(character.def().name, recording.motion, added.roots, std::move(animation), glb);
+  writeFileWhole(path, bytes);
+  return {added.framesKept, bytes.size()};
 }
 
 }  // namespace fascia

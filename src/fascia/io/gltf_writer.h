@@ -2,7 +2,10 @@
 
 #include <string>
 
+#include <vector>
+
 #include <fascia/character/recording.h>
+#include <fascia/io/gltf_skin.h>
 #include <fascia/io/texture.h>
 
 namespace fascia {
@@ -21,6 +24,18 @@ struct GlbReport {
   std::size_t framesKept = 0;  // of recording.frames
   std::size_t bytes = 0;
 };
+
+// The parts, for documents that hold more than one character: its nodes, and the frames kept.
+struct GlbCharacter {
+  std::vector<std::size_t> roots;
+  std::size_t framesKept = 0;
+};
+GlbCharacter addCharacter(const Character& character, const Recording& recording,
+                          const GlbOptions& options, GlbBuilder& glb, GltfAnimation& animation);
+// The whole file with one scene of these root nodes, and one animation.
+std::string finishGlb(const std::string& name, const std::string& motion,
+                      const std::vector<std::size_t>& roots, GltfAnimation animation,
+                      GlbBuilder& glb);
 
 // Binary glTF 2.0 (Khronos): the skin with uvs, normals and a baked animation by morph targets (one
 // per kept frame, sparse, blended linearly), the skeleton as animated nodes, the ornaments on their

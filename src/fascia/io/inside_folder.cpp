@@ -20,7 +20,7 @@ std::string insideFolder(const std::string& folder, const std::string& name,
   const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
   if (relative.empty() || relative.is_absolute() || climbs ||
       name.find('\\') != std::string::npos || name.find('\0') != std::string::npos) {
-    throw errorAt(pointer, subject + " must be named by a path inside the character's folder",
+    throw errorAt(pointer, subject + " must be named by a path inside this file's folder",
                   "put the file beside this one and write its plain name");
   }
   std::error_code error;
@@ -30,7 +30,7 @@ std::string insideFolder(const std::string& folder, const std::string& name,
     throw errorAt(pointer, subject + " is missing: " + (fs::path(folder) / relative).string());
   const auto [rootEnd, rest] = std::mismatch(root.begin(), root.end(), place.begin(), place.end());
   if (rootEnd != root.end())
-    throw errorAt(pointer, subject + " is a link that leads out of the character's folder");
+    throw errorAt(pointer, subject + " is a link that leads out of this file's folder");
   return place.string();
 }
 

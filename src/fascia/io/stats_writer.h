@@ -3,6 +3,7 @@
 #include <string>
 
 #include <fascia/character/recording.h>
+#include <fascia/world/stage_recording.h>
 
 namespace fascia {
 
@@ -11,5 +12,8 @@ namespace fascia {
 // max_penetration_m, max_edge_stretch, peak_memory_bytes, state_hash, …
 std::string statsJson(const Recording& recording);
 void writeStats(const Recording& recording, const std::string& path);
+// Of a scene: frames, simulated_s, wall_s, realtime_ratio, steps, iterations, halved_steps,
+// unconverged_steps, stopped_steps, outcome, reason, log, characters (each as above), …
+std::string statsJson(const Stage& stage, const StageRecording& recording);
 
 }  // namespace fascia

@@ -157,13 +157,6 @@ void addBones(const Character& character, const CharacterState& state, bool insi
   scene.drawables.push_back(std::move(bones));
 }
 
-// The lights stand around the photographer, so that every view is well lit.
-float studioAzimuth(const Camera& camera) {
-  const Vec3 back = camera.eye_m - camera.target_m;
-  // Straight from above, atan2(0, 0) = 0: as from the front.
-  return static_cast<float>(std::atan2(back.x(), back.z()));
-}
-
 }  // namespace
 
 Layers parseLayers(std::string_view text) {
@@ -203,29 +196,38 @@ Box visibleBounds(const CharacterState& state, const TriangleMesh& skin, const L
   return box;
 }
 
+void addCharacter(const Character& character, const CharacterState& state, const TriangleMesh& skin,
+                  const SceneOptions& options, double height_m, Scene& scene) {
+  const Layers& layers = options.layers;
+  if (layers.skeleton) addBones(character, state, layers.muscle, scene);
+  if (layers.muscle) addMuscles(character, state, options, height_m, scene);
+  if (!layers.skin) return;
+  addOrnaments(character, state, options, scene);
+  if (!skin.positions.empty())
+    (hasRig(character) ? addRigSkin : addGridSkin)(character, skin, options, height_m, scene);
+}
+
+void standLights(Scene& scene) {
+  const Vec3 back = scene.camera.eye_m - scene.camera.target_m;
+  // Straight from above, atan2(0, 0) = 0: as from the front.
+  scene.studio.azimuth_rad = static_cast<float>(std::atan2(back.x(), back.z()));
+}
+
 Scene buildScene(const Character& character, const CharacterState& state, const TriangleMesh& skin,
                  const SceneOptions& options) {
   Scene scene;
-  const Layers& layers = options.layers;
-  const Box visible = visibleBounds(state, skin, layers);
+  const Box visible = visibleBounds(state, skin, options.layers);
   const bool reached = options.reach && !options.reach->empty();
   const Box framing = reached                   ? options.reach->box()
                       : options.framing.empty() ? visible
                                                 : options.framing;
   const double height_m = framing.empty() ? 1.0 : framing.size().maxCoeff();
 
-  if (layers.skeleton) addBones(character, state, layers.muscle, scene);
-  if (layers.muscle) addMuscles(character, state, options, height_m, scene);
-  if (layers.skin) {
-    addOrnaments(character, state, options, scene);
-    if (!skin.positions.empty()) {
-      (hasRig(character) ? addRigSkin : addGridSkin)(character, skin, options, height_m, scene);
-    }
-  }
+  addCharacter(character, state, skin, options, height_m, scene);
   if (options.ground) scene.drawables.push_back(groundDisc(framing, options.ground_height_m));
   scene.camera = reached ? frameReach(options.camera, *options.reach, options.aspect)
                          : frameBox(options.camera, framing, options.aspect);
-  scene.studio.azimuth_rad = studioAzimuth(scene.camera);
+  standLights(scene);
   return scene;
 }
 

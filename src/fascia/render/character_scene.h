@@ -36,6 +36,12 @@ struct SceneOptions {
 Scene buildScene(const Character& character, const CharacterState& state, const TriangleMesh& skin,
                  const SceneOptions& options);
 
+// Its parts: a character's drawables, in its own space, for a picture of things about height_m
+// tall; and the lights, which stand around the photographer, so that every view is well lit.
+void addCharacter(const Character& character, const CharacterState& state, const TriangleMesh& skin,
+                  const SceneOptions& options, double height_m, Scene& scene);
+void standLights(Scene& scene);
+
 // What there is to see of a character with these layers: for framing a motion, add the boxes of its
 // frames.
 Box visibleBounds(const CharacterState& state, const TriangleMesh& skin, const Layers& layers);

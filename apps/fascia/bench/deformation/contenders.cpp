@@ -37,8 +37,8 @@ class BlendContender : public Contender {
       : skinning_(std::move(skinning)) {}
   std::string name() const override { return std::string(skinning_->name()); }
 
-  Performance perform(const Stage& stage, const Console&) override {
-    Performance performance;
+  ContestFrames perform(const ContestStage& stage, const Console&) override {
+    ContestFrames performance;
     const std::size_t count = stage.motions.size();
     performance.frames.assign(count, std::vector<Eigen::Vector3f>(stage.model->points_m.size()));
     std::vector<Transform> world, motion;
@@ -64,7 +64,7 @@ class FasciaContender : public Contender {
   explicit FasciaContender(CharacterDef def) : def_(std::move(def)) {}
   std::string name() const override { return "fascia"; }
 
-  Performance perform(const Stage& stage, const Console& console) override {
+  ContestFrames perform(const ContestStage& stage, const Console& console) override {
     CharacterDef def = def_;
     def.rig->model = stage.model;
     def.motions.clear();  // one of the same name would hide the rig's
@@ -76,12 +76,12 @@ class FasciaContender : public Contender {
     std::vector<std::uint32_t> vertexOf(stage.model->points_m.size(), 0);
     for (std::uint32_t v = 0; v < stage.model->vertices.size(); ++v)
       vertexOf[stage.model->vertices[v].point] = v;
-    Performance performance;
+    ContestFrames performance;
     CharacterState state = initialState(character, motion);
     SkinStats stats;
     Stopwatch watch;
     TriangleMesh surface;
-    Progress progress(console, "simulating");
+    ProgressBar progress(console, "simulating");
     for (std::size_t f = 0; f < stage.motions.size(); ++f) {
       if (f > 0) {
         watch.start();
@@ -105,10 +105,11 @@ class FasciaContender : public Contender {
 
 }  // namespace
 
-Stage makeStage(const RiggedModel& model, const SampledMotion& motion, double longest_s) {
+ContestStage makeContestStage(const RiggedModel& model, const SampledMotion& motion,
+                              double longest_s) {
   RiggedModel copy = model;
   copy.motions = {motion};
-  Stage stage{std::make_shared<const RiggedModel>(std::move(copy)), {}};
+  ContestStage stage{std::make_shared<const RiggedModel>(std::move(copy)), {}};
   // At least one step, or there would be nothing to simulate.
   const double duration_s = std::min(longest_s, motion.duration_s());
   const auto frames = static_cast<std::size_t>(

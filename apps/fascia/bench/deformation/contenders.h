@@ -15,15 +15,16 @@ inline constexpr double kContestRate_hz = 60;
 
 // A rig whose first motion is the one to be shown, and where its joints are in every frame: from
 // the bind pose to the frame.
-struct Stage {
+struct ContestStage {
   std::shared_ptr<const RiggedModel> model;
   std::vector<std::vector<Transform>> motions;  // frame, joint
 };
 // Frames at kContestRate_hz, for at most `longest_s`.
-Stage makeStage(const RiggedModel& model, const SampledMotion& motion, double longest_s);
+ContestStage makeContestStage(const RiggedModel& model, const SampledMotion& motion,
+                              double longest_s);
 
 // A motion as one way of skinning shows it.
-struct Performance {
+struct ContestFrames {
   std::vector<std::vector<Eigen::Vector3f>> frames;  // the model's points; as many as the stage's
   double frame_s = 0;  // time that it takes to pose the joints and deform the points, per frame
 };
@@ -33,7 +34,7 @@ class Contender {
  public:
   virtual ~Contender() = default;
   virtual std::string name() const = 0;
-  virtual Performance perform(const Stage& stage, const Console& console) = 0;
+  virtual ContestFrames perform(const ContestStage& stage, const Console& console) = 0;
 };
 
 // Linear blending, dual quaternions, delta mush; Fascia too, if there is a character.

@@ -25,8 +25,8 @@ Judge::Judge(const RiggedModel& model)
   computeNormals(model.points_m, model.triangles, normals_);
 }
 
-BendScore Judge::judgeBend(const Hinge& hinge, const Stage& stage,
-                           const Performance& performance) const {
+BendScore Judge::judgeBend(const Hinge& hinge, const ContestStage& stage,
+                           const ContestFrames& performance) const {
   const HingeRegion region = regionOf(model_, hinge);
   const PointList rest = model_.points_m, now = performance.frames.back();
   BendScore score;
@@ -40,7 +40,7 @@ BendScore Judge::judgeBend(const Hinge& hinge, const Stage& stage,
   return score;
 }
 
-ClipScore Judge::judgeClip(const Stage& stage, const Performance& performance) const {
+ClipScore Judge::judgeClip(const ContestStage& stage, const ContestFrames& performance) const {
   ClipScore score;
   std::vector<std::uint32_t> all(model_.points_m.size());
   std::iota(all.begin(), all.end(), 0u);

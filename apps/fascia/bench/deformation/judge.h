@@ -30,8 +30,9 @@ class Judge {
   explicit Judge(const RiggedModel& model);
 
   // The last frame of a performance, in which this hinge is bent.
-  BendScore judgeBend(const Hinge& hinge, const Stage& stage, const Performance& performance) const;
-  ClipScore judgeClip(const Stage& stage, const Performance& performance) const;
+  BendScore judgeBend(const Hinge& hinge, const ContestStage& stage,
+                      const ContestFrames& performance) const;
+  ClipScore judgeClip(const ContestStage& stage, const ContestFrames& performance) const;
   std::size_t crossingsAtRest() const { return restCrossings_.size(); }
 
  private:

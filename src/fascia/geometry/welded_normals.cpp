@@ -1,4 +1,4 @@
-#include <fascia/io/welded_normals.h>
+#include <fascia/geometry/welded_normals.h>
 
 #include <algorithm>
 #include <numeric>

@@ -1,0 +1,86 @@
+#include <fascia/io/cache.h>
+#include <fascia/io/stats_writer.h>
+#include <fascia/render/character_scene.h>
+
+#include "film.h"
+#include "film_parts.h"
+#include "outputs.h"
+#include "player.h"
+
+namespace fascia {
+namespace {
+
+// What is to be drawn, wherever it came from.
+struct Footage {
+  Character character;
+  Recording recording;
+  Texture texture;
+};
+
+Footage simulateFootage(const std::string& input, SimulationOptions& options,
+                        std::optional<double> only_s, const Console& console) {
+  Character character = prepareCharacter(input, options, console);
+  RecordOptions record = options.recordOptions(character);
+  if (only_s)
+    keepOnly(
+        *only_s,
+        record.frame_rate_hz > 0 ? record.frame_rate_hz : character.def().simulation.frame_rate_hz,
+        record);
+  Recording recording = simulate(character, record, console);
+  Texture texture = loadTexture(character.def());
+  return {std::move(character), std::move(recording), std::move(texture)};
+}
+
+Footage cachedFootage(const std::string& input) {
+  Cache cache = readCache(input);
+  return {Character(cache.def), std::move(cache.recording), std::move(cache.texture)};
+}
+
+class CharacterFilm final : public Film {
+ public:
+  CharacterFilm(Footage footage, const FilmLook& look, const Console& console)
+      : footage_(std::move(footage)), player_(footage_.character, footage_.recording) {
+    if (footage_.recording.frames.empty()) throw Error("there are no frames to draw");
+    const std::string& motion = footage_.recording.motion;
+    options_.layers = parseLayers(look.layers);
+    if (!look.camera.empty()) options_.camera = parseCamera(look.camera);
+    options_.aspect = look.aspect;
+    options_.skin_texture = toPixels(footage_.texture);
+    options_.rig_surface = rigSurface(footage_.character, console);
+    reach_ = motionReach(footage_.character,
+                         motion.empty() ? -1 : footage_.character.findMotion(motion));
+    options_.framing = reach_.box();
+    if (options_.rig_surface) options_.reach = &reach_;
+    options_.ground_height_m = floorHeight(footage_.character, reach_);
+  }
+
+  double start_s() const override { return footage_.recording.frames.front().time_s; }
+  double end_s() const override { return footage_.recording.frames.back().time_s; }
+  Scene at(double time_s) override {
+    player_.seek(time_s);
+    return buildScene(footage_.character, player_.state(), player_.skin(), options_);
+  }
+  std::string stats() const override { return statsJson(footage_.recording); }
+  void report(const std::vector<std::string>& outputs, const Console& console) const override {
+    reportRecording(footage_.recording, outputs, console);
+  }
+
+ private:
+  Footage footage_;
+  Player player_;
+  Reach reach_;
+  SceneOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Film> makeCharacterFilm(const std::string& input, SimulationOptions& options,
+                                        std::optional<double> only_s, const FilmLook& look,
+                                        const Console& console) {
+  return std::make_unique<CharacterFilm>(endingOf(input) == ".fcache"
+                                             ? cachedFootage(input)
+                                             : simulateFootage(input, options, only_s, console),
+                                         look, console);
+}
+
+}  // namespace fascia

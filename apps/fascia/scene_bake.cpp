@@ -1,0 +1,55 @@
+#include "scene_bake.h"
+
+#include <filesystem>
+
+#include <fascia/io/file.h>
+#include <fascia/io/mdd.h>
+#include <fascia/io/pc2.h>
+#include <fascia/io/scene_cache.h>
+#include <fascia/io/scene_gltf.h>
+#include <fascia/io/stats_writer.h>
+#include <fascia/world/stage_surface.h>
+
+#include "interrupt.h"
+#include "outputs.h"
+#include "stage_run.h"
+
+namespace fascia {
+namespace {
+
+std::vector<std::string> inputsOf(const SceneBake& bake, const SceneDef& def) {
+  const std::filesystem::path folder = std::filesystem::path(bake.scene).parent_path();
+  std::vector<std::string> out{bake.scene};
+  const auto add = [&](const std::string& name) {
+    if (!name.empty()) out.push_back((folder / name).string());
+  };
+  add(def.script);
+  for (const SceneBodyDef& body : def.bodies) add(body.mesh_file);
+  for (const SceneCharacterDef& character : def.characters) add(character.file);
+  return out;
+}
+
+void writeOutput(const Stage& stage, const StageRecording& recording, const std::string& path) {
+  const std::string ending = endingOf(path);
+  if (ending == ".glb") writeSceneGlb(stage, recording, path);
+  if (ending == ".fcache") writeSceneCache(stage, recording, path);
+  if (ending == ".pc2") writePc2(surfaceRecording(stage, recording), path);
+  if (ending == ".mdd") writeMdd(surfaceRecording(stage, recording), path);
+}
+
+}  // namespace
+
+void bakeScene(const SceneBake& bake, const Console& console) {
+  const Stage stage = prepareStage(bake.scene, bake.simulation);
+  checkOverwriting(inputsOf(bake, stage.def()), bake.outputs, bake.stats);
+  const StageRecording recording = perform(stage, stageRecordOptions(bake.simulation), console);
+  for (const std::string& path : bake.outputs) {
+    if (interruptSignal() != 0) throw Interrupted{};
+    writeOutput(stage, recording, path);
+    console.say("wrote " + path);
+  }
+  if (!bake.stats.empty()) writeFileWhole(bake.stats, statsJson(stage, recording));
+  reportPerformance(stage, recording, bake.outputs, console);
+}
+
+}  // namespace fascia

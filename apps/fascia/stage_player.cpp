@@ -1,0 +1,25 @@
+#include "stage_player.h"
+
+#include "film_parts.h"
+
+namespace fascia {
+
+StagePlayer::StagePlayer(const Stage& stage, const StageRecording& recording,
+                         const std::vector<Texture>& textures, const Console& console)
+    : recording_(recording) {
+  for (const StageRecording::Frame& frame : recording.frames) times_s_.push_back(frame.time_s);
+  for (std::size_t i = 0; i < recording.characters.size(); ++i) {
+    const Character& character = *stage.def().characters[i].character;
+    players_.push_back(std::make_unique<Player>(character, recording.characters[i]));
+    moment_.actors.push_back({&players_.back()->state(), &players_.back()->skin(),
+                              toPixels(textures[i]), rigSurface(character, console)});
+  }
+}
+
+void StagePlayer::seek(double time_s) {
+  const std::size_t frame = closestFrame(times_s_, recording_.frame_rate_hz, time_s);
+  moment_.bodies = recording_.frames[frame].bodies;
+  for (const auto& player : players_) player->seek(time_s);
+}
+
+}  // namespace fascia

@@ -1,0 +1,59 @@
+#include "stage_run.h"
+
+#include <fmt/core.h>
+
+#include <fascia/io/scene_file.h>
+#include <fascia/io/stats_writer.h>
+
+#include "interrupt.h"
+#include "progress.h"
+
+namespace fascia {
+
+Stage prepareStage(const std::string& path, const SimulationOptions& options) {
+  if (!options.motion.empty() || !options.joint_map.empty())
+    throw Error("--motion and --joint-map are for characters; those of a scene move as it says");
+  return loadStage(path, options.buildOptions());
+}
+
+StageRecordOptions stageRecordOptions(const SimulationOptions& options) {
+  StageRecordOptions out;
+  out.seed = options.seed;
+  out.frame_rate_hz = options.frame_rate_hz;
+  out.duration_s = options.duration_s;
+  return out;
+}
+
+StageRecording perform(const Stage& stage, StageRecordOptions options, const Console& console) {
+  ProgressBar progress(console, "performing");
+  options.progress = [&](double fraction) {
+    if (!progress.update(fraction)) throw Interrupted{};
+    return true;
+  };
+  return record(stage, options);
+}
+
+void reportPerformance(const Stage& stage, const StageRecording& recording,
+                       const std::vector<std::string>& outputs, const Console& console) {
+  for (const ScriptLogLine& line : recording.log)
+    console.say(fmt::format("{:7.3f} s  {}", line.time_s, line.text));
+  const double ratio = recording.wall_s > 0 ? recording.simulated_s / recording.wall_s : 0;
+  console.say(
+      fmt::format("{} frames, {} bodies: simulated {:.4g} s in {:.2g} s ({:.0f} × real time)",
+                  recording.frames.size(), stage.bodies().bodyCount(), recording.simulated_s,
+                  recording.wall_s, ratio));
+  if (recording.outcome == ScriptOutcome::succeeded) console.say("the script has succeeded");
+  if (recording.outcome == ScriptOutcome::failed)
+    console.hint("the script has failed" +
+                 (recording.reason.empty() ? std::string() : ": " + recording.reason));
+  if (recording.bodies.stopped > 0)
+    console.hint(fmt::format("{} steps were too hard and stood still: use a shorter \"step_s\"",
+                             recording.bodies.stopped));
+  Json::List written;
+  for (const std::string& path : outputs) written.push_back(path);
+  std::vector<Issue> issues;
+  Json stats = parseJson(statsJson(stage, recording), JsonLimits{}, issues);
+  console.answer(Json::Object{{"ok", true}, {"outputs", written}, {"stats", std::move(stats)}});
+}
+
+}  // namespace fascia

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/world/stage_recording.h>
+
+#include "console.h"
+#include "simulation_options.h"
+
+namespace fascia {
+
+// Reads and builds a scene for these options. Throws Error for options that scenes have no use for.
+Stage prepareStage(const std::string& path, const SimulationOptions& options);
+StageRecordOptions stageRecordOptions(const SimulationOptions& options);
+
+// Performs with a progress bar. Throws Interrupted on Ctrl-C.
+StageRecording perform(const Stage& stage, StageRecordOptions options, const Console& console);
+
+// A few lines about a performance for a person, the whole statistics for a machine.
+void reportPerformance(const Stage& stage, const StageRecording& recording,
+                       const std::vector<std::string>& outputs, const Console& console);
+
+}  // namespace fascia

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/io/gltf_skin.h>
+
+namespace fascia {
+
+Eigen::Vector4f gltfQuaternion(const Mat3& rotation);  // x, y, z, w
+
+// A node's place in its parent, frame by frame.
+struct PlaceTrack {
+  std::vector<Eigen::Vector3f> translations;
+  std::vector<Eigen::Vector4f> rotations;  // quaternions; neighbours on one side
+
+  void add(const Transform& place);
+};
+
+// A node that stands where the track starts.
+GlbBuilder::Json placeNode(const std::string& name, const PlaceTrack& track);
+// Animates it; drops frames that lie between their neighbours, and tracks that do not move.
+void addTracks(const std::vector<float>& times, const PlaceTrack& track, std::size_t node,
+               GlbBuilder& glb, GltfAnimation& animation);
+
+}  // namespace fascia

@@ -1,0 +1,171 @@
+#include <fascia/world/performance.h>
+
+#include <cmath>
+
+#include <fascia/base/hash.h>
+#include <fascia/body/body_contact.h>
+#include <fascia/body/body_stepper.h>
+#include <fascia/world/joint_place.h>
+#include <fascia/world/placed_field.h>
+
+namespace fascia {
+namespace {
+
+// What bodies of a scene correct each other to, relative to their sizes: far below what is seen.
+constexpr double kTolerance = 1e-8;
+constexpr int kMostIterations = 40;
+
+BodyStepperOptions stepperOptions(const SceneSimulationDef& def) {
+  BodyStepperOptions options;
+  options.scheme = def.scheme == "explicit" ? BodyScheme::explicitEuler
+                   : def.scheme == "energy" ? BodyScheme::energyConserving
+                                            : BodyScheme::implicitEuler;
+  options.tolerance = kTolerance;
+  options.max_iterations = kMostIterations;
+  return options;
+}
+
+KeyframedPath pathOf(const ScenePathDef& def) {
+  std::vector<PathKey> keys;
+  for (const ScenePathDef::Key& key : def.keys)
+    keys.push_back({key.time_s, key.position_m, key.velocity_m_per_s, key.leaving_m_per_s});
+  return KeyframedPath(std::move(keys));
+}
+
+}  // namespace
+
+// A character among the bodies.
+struct Performance::Actor {
+  const SceneCharacterDef* def;
+  int motion;
+  CharacterState state;
+  CharacterState ahead;  // its flesh as bodies meet it, step by step
+  std::unique_ptr<PlacedField> field;
+  SkinStats stats;
+};
+
+Performance::Performance(const Stage& stage, std::uint64_t seed)
+    : stage_(stage),
+      state_(stage.startState(seed)),
+      system_(stage.bodies(), BodySettings{stage.def().simulation.gravity_m_per_s2}) {
+  const SceneDef& def = stage.def();
+  for (const SceneCharacterDef& character : def.characters) addActor(character);
+  addTies();
+  if (def.simulation.scheme == "implicit") addContacts();
+  stepper_ = std::make_unique<BodyStepper>(system_, stepperOptions(def.simulation));
+  addPuppet();
+  addPaths();
+  if (!def.script_text.empty())
+    script_ = std::make_unique<Script>(def.script_text, def.script, seed);
+}
+
+Performance::~Performance() = default;
+
+void Performance::addActor(const SceneCharacterDef& def) {
+  const Character& character = *def.character;
+  const int motion = character.findMotion(def.motion);
+  auto actor = std::make_unique<Actor>();
+  actor->def = &def;
+  actor->motion = motion;
+  actor->state = initialState(character, motion);
+  actor->ahead = actor->state;
+  actor->field = std::make_unique<PlacedField>(actor->ahead.flesh, placeOf(def));
+  actors_.push_back(std::move(actor));
+}
+
+// The bodies' start is made legal first: velocities and places agree with what holds them.
+void Performance::addTies() {
+  for (Stage::Tie& tie : stage_.ties(state_)) {
+    if (tie.soft)
+      system_.pull({std::move(tie.constraint), tie.stiffness_N_per_m, tie.damping_Ns_per_m});
+    else
+      system_.hold(std::move(tie.constraint));
+  }
+  system_.satisfyConstraints(state_);
+  system_.matchVelocities(state_);
+}
+
+void Performance::addContacts() {
+  const SceneDef& def = stage_.def();
+  ContactSettings settings;
+  if (def.ground) settings.ground_m = def.ground->height_m;
+  if (def.ground) settings.friction = def.ground->friction;
+  BodyContacts& contacts = system_.setContacts(settings);
+  for (std::size_t b = 0; b < def.bodies.size(); ++b)
+    if (def.bodies[b].collides)
+      contacts.setSurface(BodyId(b), stage_.surface(BodyId(b)), def.bodies[b].friction);
+  for (std::size_t i = 0; i < def.props.size(); ++i)
+    contacts.addObstacle(stage_.prop(i), def.props[i].friction);
+  for (const auto& actor : actors_) contacts.addObstacle(*actor->field, actor->def->friction);
+}
+
+// Points of bodies, places, and the joints of characters.
+void Performance::addPuppet() {
+  std::vector<NamedPoint> points;
+  for (const Stage::NamedBodyPoint& point : stage_.points())
+    points.push_back({point.name, point.point});
+  for (const NamedPlaceDef& place : stage_.def().places)
+    points.push_back({place.name, place.position_m});
+  for (const auto& actor : actors_) {
+    const Skeleton& skeleton = actor->def->character->skeleton();
+    for (std::size_t j = 0; j < skeleton.jointCount(); ++j) {
+      const JointId joint(j);
+      points.push_back({actor->def->name + "." + skeleton.joint(joint).name,
+                        jointPlace(*actor->def, actor->motion, joint)});
+    }
+  }
+  puppet_ = std::make_unique<Puppet>(system_, state_, std::move(points));
+}
+
+void Performance::addPaths() {
+  for (const ScenePathDef& path : stage_.def().paths) {
+    KeyframedPath keyframed = pathOf(path);
+    const double onset_s = keyframed.start_s();
+    puppet_->run(makeFollow(puppet_->find(path.point), std::move(keyframed),
+                            {.preroll_s = path.preroll_s, .onset_s = onset_s}));
+  }
+}
+
+void Performance::advance(double dt_s) {
+  const std::size_t steps = stage_.stepsPerFrame(1 / dt_s);
+  const double start_s = state_.t_s;
+  for (std::size_t i = 0; i < steps; ++i) {
+    const double end_s = start_s + dt_s * static_cast<double>(i + 1) / static_cast<double>(steps);
+    step(end_s - state_.t_s);
+    state_.t_s = end_s;
+  }
+  for (const auto& actor : actors_)
+    fascia::advance(*actor->def->character, actor->motion, dt_s, actor->state, actor->stats);
+}
+
+void Performance::step(double h_s) {
+  if (script_) script_->update(*puppet_, h_s);
+  puppet_->update(h_s);
+  for (const auto& actor : actors_) {
+    actor->ahead.time_s = state_.t_s + h_s;
+    poseLayers(*actor->def->character, actor->motion, true, actor->ahead);
+  }
+  stepper_->step(h_s, state_);
+}
+
+const CharacterState& Performance::character(std::size_t i) const {
+  return actors_[i]->state;
+}
+
+const SkinStats& Performance::skinStats(std::size_t i) const {
+  return actors_[i]->stats;
+}
+
+std::uint64_t Performance::hash() const {
+  StateHash hash;
+  hash.add(state_.t_s);
+  hash.add(state_.r.data(), state_.r.size() * sizeof(double));
+  hash.add(state_.v.data(), state_.v.size() * sizeof(double));
+  for (const auto& actor : actors_) {
+    const std::uint64_t own = hashOf(*actor->def->character, actor->state);
+    hash.add(&own, sizeof own);
+  }
+  return hash.value();
+}
+
+}  // namespace fascia

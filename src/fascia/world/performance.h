@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fascia/body/body_stepper.h>
+#include <fascia/body/body_system.h>
+#include <fascia/body/puppet.h>
+#include <fascia/world/script.h>
+#include <fascia/world/stage.h>
+
+namespace fascia {
+
+// One run of a stage: bodies, characters and the script that drives them, through time. Not
+// copyable, as a script that has begun is not; the same stage and seed give the same bits again.
+class Performance {
+ public:
+  // seed 0: the start as the file says; others scatter it. The stage must outlive it. Throws Error
+  // with the faults of the script's text.
+  explicit Performance(const Stage& stage, std::uint64_t seed = 0);
+  Performance(const Performance&) = delete;
+  Performance& operator=(const Performance&) = delete;
+  ~Performance();
+
+  // One frame: script → bodies, in steps; then the characters. dt_s > 0. Throws Error of the
+  // script (file, line, call).
+  void advance(double dt_s);
+
+  double time_s() const { return state_.t_s; }
+  const OdeState& bodies() const { return state_; }
+  std::size_t characterCount() const { return actors_.size(); }
+  const CharacterState& character(std::size_t i) const;
+  const SkinStats& skinStats(std::size_t i) const;
+  const BodyStepperStats& bodyStats() const { return stepper_->stats(); }
+  // Strings to pull while it runs, by a hand or a program (spec W11).
+  Puppet& puppet() { return *puppet_; }
+  const Script* script() const { return script_.get(); }  // nullptr: the scene has none
+  std::uint64_t hash() const;                             // over time, bodies and characters
+
+ private:
+  struct Actor;
+
+  void addActor(const SceneCharacterDef& def);
+  void addTies();
+  void addPuppet();
+  void addContacts();
+  void addPaths();
+  void step(double h_s);
+
+  const Stage& stage_;
+  OdeState state_;
+  BodySystem system_;
+  std::unique_ptr<BodyStepper> stepper_;
+  std::unique_ptr<Puppet> puppet_;
+  std::unique_ptr<Script> script_;
+  std::vector<std::unique_ptr<Actor>> actors_;
+};
+
+}  // namespace fascia
