@@ -14,6 +14,7 @@ void addBench(CLI::App& program, Console& console) {
   addPaperBench(group, console);
   addScalingBench(group, console);
   addDeformationBench(group, console);
+  addReflexesBench(group, console);
 #ifdef FASCIA_WITH_BULLET
   addPeersBench(group, console);
 #endif

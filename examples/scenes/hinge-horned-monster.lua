@@ -9,9 +9,7 @@ local walk = start(function()
 end)
 
 -- The monster lies in wait: horn raised, mouth open.
-hold("horn.elbow")
-hold("spike.tip")
-hold("jaw.tip")
+for _, point in ipairs {"horn.elbow", "spike.tip", "jaw.tip"} do hold(point) end
 wait_for(function() return distance("man.middle", "monster.brow") < 1.75 end)
 
 -- Skewer.
@@ -42,5 +40,6 @@ if not fed then fail("missed the mouth") end
 parallel(
   function() grab("man.middle", "monster.throat", 0.1) end,
   function() move("jaw.tip", position("jaw.tip") + vec(0.1, 0.36), 0.15) end)
-wait(1)
+move("horn.elbow", brow + vec(0.1, 0.95), 0.8)
+wait(0.5)
 succeed()

@@ -12,6 +12,7 @@ class Console;
 void addPaperBench(CLI::App& group, Console& console);
 void addScalingBench(CLI::App& group, Console& console);
 void addDeformationBench(CLI::App& group, Console& console);
+void addReflexesBench(CLI::App& group, Console& console);
 void addPeersBench(CLI::App& group, Console& console);  // only where Bullet was found
 
 }  // namespace fascia
