@@ -3,6 +3,7 @@
 #include <fascia/base/parallel.h>
 #include <fascia/body/body_field.h>
 
+#include "puppets.h"
 #include "scenes.h"
 #include "support/count_allocations.h"
 
@@ -52,6 +53,27 @@ TEST(BodyField, AllocatesNothingAfterConstruction) {
     }
     EXPECT_EQ(allocations - before, 0) << basis->name();
   }
+}
+
+TEST(Puppet, AllocatesOnlyWhenAControlBeginsOrEnds) {
+  const ThreadLimit one(1);
+  test::Stage stage(3, 2);
+  Puppet& puppet = *stage.puppet;
+  puppet.run(makeChase(stage["right 0"], stage["left 1"], {.duration_s = 10}));
+  const KeyframedPath path({{0, Vec3(1, 0, 0), {}, {}},
+                            {0.2, Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)},
+                            {9, Vec3(2, 1, 0), {}, {}}});
+  puppet.run(makeFollow(stage["right 1"], path, {.preroll_s = 0.1}));
+  puppet.run(makeWaitFor([](const Puppet&) { return false; }));
+  puppet.push(stage["middle 0"], Vec3(1, 0, 0), 10);
+  const auto pullTo = [&](double x) { puppet.pull(stage["left 0"], Vec3(x, 0, 0), 50, 5); };
+  pullTo(0);
+  for (int i = 0; i < 3; ++i) stage.step();
+  const long before = allocations;
+  for (int i = 0; i < 60; ++i) pullTo(0.01 * i), stage.step();
+  EXPECT_EQ(allocations - before, 0);
+  puppet.hold(stage["left 0"]);
+  EXPECT_GT(allocations - before, 0);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class CubicSegment {
   double end_s() const { return end_s_; }
 
   PathPoint at(double t_s) const {
-    if (t_s <= start_s_) return straight(t_s - start_s_, startPosition_m_, startVelocity_m_per_s_);
+    if (t_s < start_s_) return straight(t_s - start_s_, startPosition_m_, startVelocity_m_per_s_);
     if (t_s >= end_s_) return straight(t_s - end_s_, endPosition_m_, endVelocity_m_per_s_);
     const double u = t_s - start_s_;
     return {startPosition_m_ + u * (startVelocity_m_per_s_ + u * (quadratic_ + u * cubic_)),
