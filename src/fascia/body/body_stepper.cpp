@@ -12,9 +12,6 @@ namespace {
 
 // A step that does not converge in 1/16 of its length will not in less.
 constexpr int kMaxHalvings = 4;
-// Contacts that come and go may keep Newton's method from its tolerance. If it ends this near, as a
-// part of a body's size, halving the step would cost more than it is worth.
-constexpr double kNearEnough = 1e-3;
 
 void checkOption(bool sound, const char* what, double found, const char* expected) {
   if (sound) return;
@@ -86,7 +83,7 @@ BodyStepper::Outcome BodyStepper::tryStep(double h_s, double lead_s, const OdeSt
   stats_.iterations += static_cast<std::uint64_t>(result.iterations);
   if (!result.sound) return Outcome::failed;
   if (result.converged) return Outcome::converged;
-  return result.touching && result.correction <= kNearEnough ? Outcome::near : Outcome::unconverged;
+  return result.near ? Outcome::near : Outcome::unconverged;
 }
 
 void BodyStepper::explicitStep(double h_s, const OdeState& from, OdeState& to) {

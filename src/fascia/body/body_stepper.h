@@ -30,7 +30,7 @@ struct BodyStepperOptions {
   double tolerance = 1e-10;  // (0, 1)
   // The same for steps in which there are contacts. Their gaps are a hundredth of a body, so that
   // they hardly gain by more; it costs an iteration or two.
-  double contact_tolerance = 1e-5;  // (0, 1)
+  double contact_tolerance = 1e-4;  // (0, 1)
   int max_iterations = 30;          // [1, 1000]; with 1 a step is linearly implicit: the cheapest
 };
 
