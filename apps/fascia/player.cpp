@@ -48,6 +48,11 @@ Player::Player(const Character& character, const Recording& recording)
 void Player::seek(double time_s) {
   const Recording::Frame& frame = frameAt(recording_, time_s);
   state_.time_s = frame.time_s;
+  if (const auto& soft = character_.softFlesh(); soft && !frame.soft_shapes.empty()) {
+    if (frame.soft_shapes.size() != soft->shapeSize())
+      throw Error("the recording's soft solids are not those of the character");
+    soft->setShapes(frame.soft_shapes, frame.time_s, state_.bodies);
+  }
   poseLayers(character_, motion_, false, state_);
   skin_.positions = frame.skin_m;
   if (creases_) {

@@ -79,7 +79,7 @@ TEST(BodySurface, SolidKeepsItsOwnDistances) {
 
 TEST(BodySurface, MeshesOfOutlinesAreClosedAndFine) {
   const std::vector<Vec2> bay{{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
-  const TriangleMesh& mesh = makeOutlineSurface(bay, 0.5)->mesh();
+  const TriangleMesh mesh = makeOutlineSurface(bay, 0.5)->mesh();
   EXPECT_NEAR(enclosedVolume(mesh), 5 * 0.5, 1e-4);
   EXPECT_NO_THROW(makeMeshSurface(mesh));  // which refuses open ones
   for (const auto& t : mesh.triangles)
@@ -93,7 +93,7 @@ TEST(BodySurface, RimsAreSmoothWhereTheyTurnLittle) {
   std::vector<Vec2> disk;
   for (int i = 0; i < 40; ++i)
     disk.emplace_back(std::cos(2 * kPi * i / 40), std::sin(2 * kPi * i / 40));
-  const TriangleMesh& mesh = makeOutlineSurface(disk, 0.2)->mesh();
+  const TriangleMesh mesh = makeOutlineSurface(disk, 0.2)->mesh();
   int rim = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     if (mesh.normals[i].z() != 0) continue;

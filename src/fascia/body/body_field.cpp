@@ -96,8 +96,13 @@ void BodyField::finish(const Part& part, Posed& posed) const {
   posed.frame = {rotationOf(center.gradient), center.x_m};
   const Transform frameFromWorld = posed.frame.inverse();
   const Box box = part.surface->bounds_m();
-  for (std::size_t c = 0; c < kOutline; ++c)
-    posed.outline[c] = frameFromWorld.point(posed.map.point(corner(box, c)));
+  // Corners alone would not tell when only what is between them moves.
+  const std::array<Vec3, 3> bulges = posed.map.bulges();
+  for (std::size_t c = 0; c < kOutline; ++c) {
+    Vec3 x = posed.map.point(corner(box, c));
+    for (std::size_t axis = 0; axis < 3; ++axis) x += (c >> axis & 1 ? 1 : -1) * bulges[axis];
+    posed.outline[c] = frameFromWorld.point(x);
+  }
 }
 
 void BodyField::evaluate(SolidId solid, ConstVectors points, float* distance_m,
@@ -192,22 +197,6 @@ void BodyField::worldFromMaterials(SolidId solid, ConstVectors materials, Vector
   const BodyMap& map = posed_[solid.index()].map;
   if (!map.affine()) return Field::worldFromMaterials(solid, materials, world);
   affinePoints(map.center().gradient, map.center_m(), map.center().x_m, materials, world);
-}
-
-void BodyField::writeMesh(SolidId solid, TriangleMesh& mesh) const {
-  const TriangleMesh& rest = surface(solid).mesh();
-  const BodyMap& map = posed_[solid.index()].map;
-  mesh = rest;
-  for (std::size_t i = 0; i < rest.positions.size(); ++i) {
-    const BodyMap::Tangent tangent = map.at(rest.positions[i].cast<double>());
-    mesh.positions[i] = tangent.x_m.cast<float>();
-    if (i >= rest.normals.size()) continue;
-    // cof F n has the direction of F⁻ᵀ n and exists for flattened bodies too.
-    Mat3 cofactor;
-    for (int a = 0; a < 3; ++a)
-      cofactor.col(a) = tangent.gradient.col((a + 1) % 3).cross(tangent.gradient.col((a + 2) % 3));
-    mesh.normals[i] = (cofactor * rest.normals[i].cast<double>()).normalized().cast<float>();
-  }
 }
 
 }  // namespace fascia

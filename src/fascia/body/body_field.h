@@ -27,11 +27,16 @@ class BodyField final : public Field {
   // The coordinates of all bodies and their rates. Allocates nothing.
   void update(std::span<const double> q, std::span<const double> v);
 
+  // Whether the other was made for the same bodies, or copied from one that was.
+  bool sharesBodiesWith(const BodyField& other) const { return parts_ == other.parts_; }
   BodyId bodyOf(SolidId solid) const { return (*parts_)[solid.index()].body; }
   const BodySurface& surface(SolidId solid) const { return *(*parts_)[solid.index()].surface; }
   const BodyMap& map(SolidId solid) const { return posed_[solid.index()].map; }
-  // The deformed surface for pictures: the surface's mesh, mapped. Allocates for another mesh only.
-  void writeMesh(SolidId solid, TriangleMesh& mesh) const;
+  // The deformed surface for pictures.
+  void writeMesh(SolidId solid, TriangleMesh& mesh) const {
+    mesh = surface(solid).mesh();
+    deform(map(solid), mesh);
+  }
 
   std::size_t solidCount() const override { return posed_.size(); }
   Box bounds(SolidId solid) const override { return posed_[solid.index()].map.bounds(); }

@@ -44,7 +44,7 @@ BodyMap::BodyMap(BodyShapePtr shape, const Box& domain_m) {
   c.domain_m = domain_m, c.center_m = domain_m.center();
   c.reach_m = {domain_m.low - kMargin * domain_m.size(), domain_m.high + kMargin * domain_m.size()};
   const int count = std::clamp(basis.degree() + 1, kMinSamples, kMaxSamples);
-  c.sampleCounts = {count, count, count};
+  c.sampleCount = count;
   for (int k = 0; k < count; ++k)
     for (int j = 0; j < count; ++j)
       for (int i = 0; i < count; ++i)
@@ -116,14 +116,12 @@ Vec3 BodyMap::velocity(const Vec3& X) const {
 }
 
 // The largest difference of the given order between samples in a row along an axis, m.
-double BodyMap::spread(std::size_t axis, int order) const {
-  const auto& n = constant_->sampleCounts;
-  const std::size_t stride =
-      axis == 0 ? 1 : static_cast<std::size_t>(axis == 1 ? n[0] : n[0] * n[1]);
+double BodyMap::spread(std::size_t axis, std::size_t order) const {
+  const auto n = static_cast<std::size_t>(constant_->sampleCount);
+  const std::size_t stride = axis == 0 ? 1 : axis == 1 ? n : n * n;
   double largest_m = 0;
   for (std::size_t i = 0; i < deformed_m_.size(); ++i) {
-    const auto place = static_cast<int>(i / stride) % n[axis];
-    if (place + order >= n[axis]) continue;
+    if (i / stride % n + order >= n) continue;
     const Vec3 &a = deformed_m_[i], &b = deformed_m_[i + stride];
     const Vec3 difference =
         order == 1 ? Vec3(b - a) : Vec3(a - 2 * b + deformed_m_[i + 2 * stride]);
@@ -147,6 +145,26 @@ void BodyMap::measure() {
   const Vec3 pad = Vec3::Constant(curved_m);
   bounds_ = {bounds_.low - pad, bounds_.high + pad};
   covered_m_ = 0.5 * std::sqrt(edges_m2) + curved_m;
+}
+
+// Between a parabola's ends, n − 1 samples apart, the middle is off by (n − 1)²/8 second
+// differences.
+std::array<Vec3, 3> BodyMap::bulges() const {
+  std::array<Vec3, 3> out{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  if (constant_->affine) return out;
+  const auto n = static_cast<std::size_t>(constant_->sampleCount), middle = n / 2;
+  const std::size_t strides[] = {1, n, n * n};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t stride = strides[axis];
+    const std::size_t first = middle * (strides[0] + strides[1] + strides[2]) - middle * stride;
+    for (std::size_t i = 0; i + 2 < n; ++i) {
+      const Vec3* at = deformed_m_.data() + first + i * stride;
+      const Vec3 bulge_m = 0.125 * static_cast<double>((n - 1) * (n - 1)) *
+                           (at[0] - 2 * at[stride] + at[2 * stride]);
+      if (bulge_m.squaredNorm() > out[axis].squaredNorm()) out[axis] = bulge_m;
+    }
+  }
+  return out;
 }
 
 std::size_t BodyMap::nearestSample(const Vec3& x) const {
@@ -213,6 +231,17 @@ BodyMap::Inverse BodyMap::newton(const Vec3& x, const Vec3& start) const {
   here.found =
       off_m <= kFoundTolerance * size_m && tangent.gradient.determinant() > kLeastDeterminant;
   return here;
+}
+
+void deform(const BodyMap& map, TriangleMesh& mesh) {
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const BodyMap::Tangent tangent = map.at(mesh.positions[i].cast<double>());
+    mesh.positions[i] = tangent.x_m.cast<float>();
+    // The cofactors' image has the direction of F⁻ᵀ n, and exists for flattened bodies too.
+    if (i < mesh.normals.size())
+      mesh.normals[i] =
+          (cofactors(tangent.gradient) * mesh.normals[i].cast<double>()).normalized().cast<float>();
+  }
 }
 
 }  // namespace fascia

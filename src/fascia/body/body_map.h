@@ -5,6 +5,7 @@
 #include <span>
 
 #include <fascia/body/body_model.h>
+#include <fascia/geometry/triangle_mesh.h>
 
 namespace fascia {
 
@@ -44,6 +45,9 @@ class BodyMap {
   const Mat3& centerRate_per_s() const { return centerRate_per_s_; }  // of the gradient
   const Vec3& center_m() const { return constant_->center_m; }        // undeformed
 
+  // How far the deformed domain's middle lines bulge out of the straight: along each axis the
+  // farthest, m.
+  std::array<Vec3, 3> bulges() const;
   // A box around the deformed domain.
   const Box& bounds() const { return bounds_; }
   // No point of the deformed matter is nearer than this, m; the direction away from it.
@@ -61,13 +65,13 @@ class BodyMap {
     bool affine;
     Box domain_m, reach_m;
     Vec3 center_m;
-    std::array<int, 3> sampleCounts;
+    int sampleCount;               // along each axis
     std::vector<Vec3> samples_m;   // a lattice over the domain, x fastest
     Eigen::MatrixXd sampleValues;  // p at each, shapeCount × samples
   };
-  Tangent tangentOf(const Eigen::MatrixXd& R, const Vec3& X, bool moves) const;
+  Tangent tangentOf(const Eigen::MatrixXd& R, const Vec3& X, bool isRate) const;
   void measure();
-  double spread(std::size_t axis, int order) const;
+  double spread(std::size_t axis, std::size_t order) const;
   std::size_t nearestSample(const Vec3& x) const;
   Inverse newton(const Vec3& x, const Vec3& start) const;
 
@@ -80,5 +84,8 @@ class BodyMap {
   double covered_m_ = 0;          // every point of the deformed domain has a sample this near
   Box bounds_;
 };
+
+// Maps a mesh of undeformed points, and turns its normals.
+void deform(const BodyMap& map, TriangleMesh& mesh);
 
 }  // namespace fascia

@@ -53,13 +53,60 @@ SkinSettings settingsOf(const SimulationDef& s, const BuildOptions& options) {
   return out;
 }
 
-// Poses the layers below the skin at any time of a motion, in the state's own memory.
+// The bodies' shapes at one moment, or where they would stand still, to the flesh.
+void showBodies(const OdeState& bodies, bool moving, CharacterState& state) {
+  if (moving) {
+    state.flesh.soft().update(bodies.r, bodies.v);
+    return;
+  }
+  state.stillBodies.assign(bodies.v.size(), 0.0);
+  state.flesh.soft().update(bodies.r, state.stillBodies);
+}
+
+// Poses the layers below the skin at any time of a motion, in the state's own memory. Soft solids
+// are taken from the interval that was stepped last, or as the state has them.
 class MotionPoses final : public SkinPoseSource {
  public:
   MotionPoses(const Character& character, int motion, bool moving, CharacterState& state)
       : character_(character), motion_(motion), moving_(moving), state_(state) {}
 
+  // The soft solids' steps to end_s, which at() then shows; how many were put back.
+  std::size_t stepBodies(double end_s) {
+    if (!character_.softFlesh()) return 0;
+    stepper_ = &state_.softWorkspace.stepper(character_.softFlesh(),
+                                             character_.def().simulation.gravity_m_per_s2);
+    return stepper_->advance(
+        [this](double time_s) -> const PosedSkeleton& {
+          poseJoints(time_s);
+          return state_.skeleton;
+        },
+        end_s, state_.bodies);
+  }
+
   SkinPose at(double time_s) override {
+    poseJoints(time_s);
+    character_.flesh().pose(state_.posture, state_.skeleton, state_.parameters,
+                            state_.flesh.rigid());
+    if (character_.softFlesh()) showSoft(time_s);
+    return {&state_.flesh, state_.skeleton.joint_world};
+  }
+
+ private:
+  void showSoft(double time_s) {
+    character_.softFlesh()->prepare(state_.flesh);
+    if (stepper_) {
+      showBodies(stepper_->at(time_s), moving_, state_);
+      return;
+    }
+    OdeState& bodies = state_.bodies;
+    if (bodies.r.size() != character_.softFlesh()->model().size() || bodies.t_s != time_s) {
+      character_.softFlesh()->place(state_.skeleton, bodies);
+      bodies.t_s = time_s;
+    }
+    showBodies(bodies, moving_, state_);
+  }
+
+  void poseJoints(double time_s) {
     const Skeleton& skeleton = character_.skeleton();
     Posture& posture = state_.posture;
     if (motion_ >= 0) {
@@ -74,15 +121,13 @@ class MotionPoses final : public SkinPoseSource {
       for (Flesh::ParameterOverride& p : state_.parameters) p.rate = 0;
     }
     skeleton.pose(posture, state_.skeleton);
-    character_.flesh().pose(posture, state_.skeleton, state_.parameters, state_.flesh);
-    return {&state_.flesh, state_.skeleton.joint_world};
   }
 
- private:
   const Character& character_;
   int motion_;
   bool moving_;
   CharacterState& state_;
+  SoftStepper* stepper_ = nullptr;  // once it has stepped
 };
 
 // A posture that stands still: time goes on, the pose does not.
@@ -110,6 +155,7 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
   flesh_ = Flesh(def_.flesh, skeleton_, "/solids", diagnostics);
   ornaments_ = Flesh(def_.ornaments, skeleton_, "/ornaments", diagnostics, Flesh::Role::ornament);
   const bool hasFlesh = diagnostics.ok();
+  if (hasFlesh) buildSoftFlesh(diagnostics);
   checkSimulation(def_.simulation, diagnostics);
   for (std::size_t i = 0; i < def_.motions.size(); ++i) {
     const std::string pointer = "/motions/" + std::to_string(i);
@@ -133,6 +179,29 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
                                    "/skin", diagnostics);
   }
   diagnostics.throwIfErrors();
+}
+
+void Character::buildSoftFlesh(Diagnostics& diagnostics) {
+  const auto isSoft = [](const FleshSolidDef& solid) { return solid.soft.has_value(); };
+  const std::vector<FleshSolidDef>&solids = def_.flesh.solids, &ornaments = def_.ornaments.solids;
+  for (std::size_t i = 0; i < ornaments.size(); ++i)
+    if (isSoft(ornaments[i]))
+      diagnostics.error("/ornaments/" + std::to_string(i) + "/soft",
+                        "an ornament is rigid: it cannot be soft", "make it one of the solids");
+  for (std::size_t m = 0; m < def_.motions.size(); ++m) {
+    const std::vector<TrackDef>& tracks = def_.motions[m].tracks;
+    for (std::size_t t = 0; t < tracks.size(); ++t) {
+      const auto solid = std::ranges::find(solids, tracks[t].name, &FleshSolidDef::name);
+      if (tracks[t].target != TrackDef::Target::solid || solid == solids.end() || !isSoft(*solid))
+        continue;
+      diagnostics.error(
+          "/motions/" + std::to_string(m) + "/tracks/" + std::to_string(t),
+          "the soft solid '" + solid->name + "' takes its shape from forces: it has no keys",
+          "drop its \"soft\", or the track");
+    }
+  }
+  if (std::ranges::none_of(solids, isSoft)) return;
+  softFlesh_ = std::make_shared<SoftFlesh>(def_.flesh, flesh_, "/solids", diagnostics);
 }
 
 // The rig's motions come after the character's own; one that has the name of an own one is hidden.
@@ -163,6 +232,8 @@ std::uint64_t hashOf(const Character& character, const CharacterState& state) {
   StateHash hash;
   hash.add(state.time_s);
   hash.add(state.posture.values.data(), state.posture.values.size() * sizeof(double));
+  hash.add(state.bodies.r.data(), state.bodies.r.size() * sizeof(double));
+  hash.add(state.bodies.v.data(), state.bodies.v.size() * sizeof(double));
   if (character.skin()) state.skin.addTo(hash, character.skin()->topology());
   return hash.value();
 }
@@ -172,9 +243,25 @@ void poseLayers(const Character& character, int motion, bool moving, CharacterSt
   character.ornaments().pose(state.posture, state.skeleton, {}, state.ornaments);
 }
 
+namespace {
+
+// The soft solids hang as they would after any time, and move with their joints.
+void settleBodies(const Character& character, int motion, CharacterState& state) {
+  const SimulationDef& simulation = character.def().simulation;
+  if (simulation.settle_s > 0)
+    state.softWorkspace.stepper(character.softFlesh(), simulation.gravity_m_per_s2)
+        .settle(state.skeleton, state.bodies);
+  poseLayers(character, motion, true, state);
+  character.softFlesh()->setRigidVelocities(state.skeleton, state.bodies);
+  poseLayers(character, motion, false, state);
+}
+
+}  // namespace
+
 CharacterState initialState(const Character& character, int motion) {
   CharacterState state;
   poseLayers(character, motion, false, state);
+  if (character.softFlesh()) settleBodies(character, motion, state);
   if (character.skin()) {
     const SkinPose pose{&state.flesh, state.skeleton.joint_world};
     carrySkin(*character.skin(), pose, state.skin);
@@ -195,15 +282,16 @@ void advance(const Character& character, int motion, double dt_s, CharacterState
              SkinStats& stats) {
   const double start = state.time_s;
   state.time_s = start + dt_s;
-  if (!character.skin()) {
-    poseLayers(character, motion, true, state);
-    return;
-  }
   MotionPoses poses(character, motion, true, state);
   const int pieces = std::max(1, static_cast<int>(std::ceil(dt_s / kLongestFrame_s - 1e-6)));
-  for (int i = 0; i < pieces; ++i)
-    advanceSkin(*character.skin(), poses, start + dt_s * i / pieces,
-                start + dt_s * (i + 1) / pieces, state.skin, state.workspace, stats);
+  for (int i = 0; i < pieces; ++i) {
+    const double from = start + dt_s * i / pieces;
+    const double to = i + 1 == pieces ? state.time_s : start + dt_s * (i + 1) / pieces;
+    stats.repaired_points += poses.stepBodies(to);
+    if (character.skin())
+      advanceSkin(*character.skin(), poses, from, to, state.skin, state.workspace, stats);
+  }
+  if (!character.skin()) poses.at(state.time_s);
   character.ornaments().pose(state.posture, state.skeleton, {}, state.ornaments);
 }
 

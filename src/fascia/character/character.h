@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fascia/character/character_def.h>
+#include <fascia/character/soft_stepper.h>
 #include <fascia/motion/clip.h>
 #include <fascia/skin/skin.h>
 
@@ -30,6 +31,8 @@ class Character {
   const Flesh& flesh() const { return flesh_; }
   const Flesh& ornaments() const { return ornaments_; }  // rigid: seen, but not felt by the skin
   const Skin* skin() const { return skin_.get(); }       // nullptr: a character without skin
+  // Solids of the flesh that are deformable bodies; nullptr: none.
+  const std::shared_ptr<const SoftFlesh>& softFlesh() const { return softFlesh_; }
   std::size_t motionCount() const { return clips_.size(); }
   const BoundClip& motion(std::size_t i) const { return clips_[i]; }
   // Index of a motion by name; empty name = the first; -1 = none of that name.
@@ -37,10 +40,12 @@ class Character {
 
  private:
   void bindRigMotions(Diagnostics& diagnostics);
+  void buildSoftFlesh(Diagnostics& diagnostics);
 
   CharacterDef def_;
   Skeleton skeleton_;
   Flesh flesh_, ornaments_;
+  std::shared_ptr<const SoftFlesh> softFlesh_;
   std::unique_ptr<const Skin> skin_;
   std::vector<BoundClip> clips_;
 };
@@ -50,25 +55,29 @@ struct CharacterState {
   double time_s = 0;
   Posture posture;
   PosedSkeleton skeleton;
-  PosedFlesh flesh;
+  OdeState bodies;  // of the soft solids
+  LayeredFlesh flesh;
   PosedFlesh ornaments;
   SkinState skin;
   // Scratch memory, not part of the state's meaning; a copy starts with none.
   SkinWorkspace workspace;
+  SoftWorkspace softWorkspace;
   std::vector<Flesh::ParameterOverride> parameters;
+  std::vector<double> stillBodies;  // velocities of none
 };
 
-// Over time, posture and skin: equal exactly when the states are.
+// Over time, posture, soft solids and skin: equal exactly when the states are.
 std::uint64_t hashOf(const Character& character, const CharacterState& state);
 
 // The state at time 0 of a motion (-1: the rest posture), settled for simulation.settle_s.
 CharacterState initialState(const Character& character, int motion);
 
-// The layers below the skin at state.time_s; `moving` = false: velocities 0.
+// The layers below the skin at state.time_s; `moving` = false: velocities 0. Soft solids as
+// state.bodies has them if those are of this very time; otherwise undeformed, where joints are.
 void poseLayers(const Character& character, int motion, bool moving, CharacterState& state);
 
-// One frame: motion → skeleton → flesh → skin. dt_s > 0; long frames are divided. Never throws,
-// allocates nothing after the first calls.
+// One frame: motion → skeleton → flesh → soft solids → skin. dt_s > 0; long frames are divided.
+// Never throws, allocates nothing after the first calls.
 void advance(const Character& character, int motion, double dt_s, CharacterState& state,
              SkinStats& stats);
 

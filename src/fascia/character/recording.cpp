@@ -28,7 +28,9 @@ Recording record(const Character& character, const RecordOptions& options) {
                   out.stats);
     }
     if (state.time_s + 0.5 * dt >= options.start_s)
-      out.frames.push_back({state.time_s, state.posture.values, out.skin.positions});
+      out.frames.push_back({state.time_s, state.posture.values, out.skin.positions,
+                            character.softFlesh() ? character.softFlesh()->shapes(state.bodies)
+                                                  : std::vector<double>{}});
   };
   keep();
   for (std::int64_t i = 0; i < frames; ++i) {

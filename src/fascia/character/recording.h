@@ -14,6 +14,7 @@ struct Recording {
     double time_s = 0;
     std::vector<double> posture;          // Posture::values
     std::vector<Eigen::Vector3f> skin_m;  // vertices in skinSurface order; may be empty
+    std::vector<double> soft_shapes;      // SoftFlesh::shapes; empty without soft solids
   };
   std::string motion;  // its name; empty = the rest posture
   double frame_rate_hz = 60;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <fascia/body/body_def.h>
 #include <fascia/field/field.h>
 #include <fascia/field/solid.h>
 #include <fascia/skeleton/skeleton.h>
@@ -30,6 +32,16 @@ struct Color {
   float r = 0.8f, g = 0.8f, b = 0.8f;  // linear is not meant: sRGB, each in [0, 1]
 };
 
+// A solid that is a linear deformable body instead of a rigid one: it sags, lags and jiggles
+// (Witkin & Welch 1990). The joint carries some of its points, the rest follows by itself.
+struct SoftSolidDef : BodyMaterialDef {
+  SoftSolidDef() { rigidity_Pa = 1e3, volume_Pa = 1e4, relaxation_s = 0.01; }  // fat
+  BodyBasisDef basis;
+  // In the solid's frame, within its bounds, at most 64; none: some at the end that is nearest to
+  // the joint.
+  std::vector<Vec3> held_m;
+};
+
 // A solid on a joint. Flesh solids shape the skin; ornaments (eyes, beak, claws) are only seen.
 struct FleshSolidDef {
   std::string name;  // unique
@@ -39,6 +51,7 @@ struct FleshSolidDef {
   SolidDef solid;
   std::vector<DriverDef> drivers;
   Color color{0.72f, 0.28f, 0.26f};
+  std::optional<SoftSolidDef> soft;  // not of ornaments, and not with drivers
 };
 
 struct FleshDef {
@@ -121,6 +134,7 @@ class Flesh {
   const FleshSolidDef& def(SolidId id) const { return defs_[id.index()]; }
   SolidId find(std::string_view name) const;  // invalid if there is none
   JointId joint(SolidId id) const { return solids_[id.index()].joint; }
+  const Transform& placeInJoint(SolidId id) const { return solids_[id.index()].inJoint; }
   const Solid& restSolid(SolidId id) const;
 
   // An animated parameter: replaces the rest value and whatever a driver says; the last one of a

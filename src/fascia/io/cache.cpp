@@ -11,10 +11,11 @@ namespace fascia {
 namespace {
 
 // Layout, little-endian: magic, u32 version; texts (u64 length, bytes): character file, texture,
-// motion; the rig if the character has one (version 2); rate, loop; the mesh; per frame time,
-// posture, positions as float32; stats.
+// motion; the rig if the character has one (version 2 and later); how many numbers the soft solids'
+// shapes are (version 3); rate, loop; the mesh; per frame time, posture, shapes, positions as
+// float32; stats.
 constexpr std::string_view kMagic("FCACHE\x1a\n", 8);
-constexpr std::uint32_t kPlainVersion = 1, kRigVersion = 2;
+constexpr std::uint32_t kPlainVersion = 1, kRigVersion = 2, kSoftVersion = 3;
 constexpr std::size_t kMaxFileBytes = std::size_t{8} << 30;
 
 template <class T>
@@ -79,12 +80,25 @@ std::size_t valueCount(const CharacterDef& def) {
   return count;
 }
 
-Recording::Frame readFrame(ByteReader& in, std::size_t postureSize, std::size_t vertices) {
+std::size_t shapeSize(const Recording& recording) {
+  return recording.frames.empty() ? 0 : recording.frames.front().soft_shapes.size();
+}
+
+// Older programs still read what they can.
+std::uint32_t versionOf(const CharacterDef& def, const Recording& recording) {
+  if (shapeSize(recording) > 0) return kSoftVersion;
+  return def.rig ? kRigVersion : kPlainVersion;
+}
+
+Recording::Frame readFrame(ByteReader& in, std::size_t postureSize, std::size_t shapes,
+                           std::size_t vertices) {
   Recording::Frame frame;
   frame.time_s = in.value<double>();
   checkFinite(in, frame.time_s);
   in.array(frame.posture, postureSize);
-  for (const double value : frame.posture) checkFinite(in, value);
+  in.array(frame.soft_shapes, shapes);
+  for (const auto* values : {&frame.posture, &frame.soft_shapes})
+    for (const double value : *values) checkFinite(in, value);
   if (in.value<std::uint8_t>() != 0) in.array(frame.skin_m, vertices);
   checkFinite(in, frame.skin_m);
   return frame;
@@ -102,11 +116,13 @@ void writeCache(const CharacterDef& def, const Recording& recording, const std::
   if (def.rig && !def.rig->model) throw Error("the character's rig was not read from its file");
   ByteWriter head;
   head.bytes = kMagic;
-  head.value(def.rig ? kRigVersion : kPlainVersion);  // older programs still read the plain ones
+  const std::size_t shapes = shapeSize(recording);
+  head.value(versionOf(def, recording));
   head.text(characterText(def));
   head.text(texture ? texture->bytes : loadTexture(def).bytes);
   head.text(recording.motion);
   if (def.rig) writeRig(*def.rig->model, recording.motion, head);
+  if (shapes > 0) head.value(static_cast<std::uint64_t>(shapes));
   head.value(recording.frame_rate_hz);
   head.value(static_cast<std::uint8_t>(recording.loop));
   writeMesh(head, recording.skin);
@@ -115,13 +131,14 @@ void writeCache(const CharacterDef& def, const Recording& recording, const std::
   file.write(head.bytes);
   for (const Recording::Frame& frame : recording.frames) {
     const bool skin = !frame.skin_m.empty();
-    if (frame.posture.size() != postureSize ||
+    if (frame.posture.size() != postureSize || frame.soft_shapes.size() != shapes ||
         (skin && frame.skin_m.size() != recording.skin.positions.size())) {
       throw Error("the recording is not of this character");
     }
     ByteWriter out;
     out.value(frame.time_s);
     out.array(frame.posture.data(), frame.posture.size());
+    out.array(frame.soft_shapes.data(), frame.soft_shapes.size());
     out.value(static_cast<std::uint8_t>(skin));
     out.array(frame.skin_m.data(), frame.skin_m.size());
     file.write(out.bytes);
@@ -140,9 +157,9 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   if (!isCache(bytes)) in.fail("is not a Fascia cache");
   in.take(kMagic.size());
   const auto version = in.value<std::uint32_t>();
-  if (version < kPlainVersion || version > kRigVersion) {
+  if (version < kPlainVersion || version > kSoftVersion) {
     in.fail("has cache format " + std::to_string(version) + ", this program reads up to format " +
-            std::to_string(kRigVersion));
+            std::to_string(kSoftVersion));
   }
   Cache cache;
   cache.def = readCharacterText(in.text(), file).def;
@@ -153,6 +170,8 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   Recording& recording = cache.recording;
   recording.motion = in.text();
   if (cache.def.rig) cache.def.rig->model = std::make_shared<const RiggedModel>(readRig(in));
+  const auto shapes =
+      version == kSoftVersion ? static_cast<std::size_t>(in.value<std::uint64_t>()) : 0;
   recording.frame_rate_hz = in.value<double>();
   if (!(recording.frame_rate_hz > 0 && recording.frame_rate_hz <= 1e6)) {
     in.fail("has a frame rate out of range");
@@ -166,7 +185,7 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   const auto frames = in.value<std::uint64_t>();
   const std::size_t postureSize = valueCount(cache.def);
   for (std::uint64_t f = 0; f < frames; ++f) {
-    recording.frames.push_back(readFrame(in, postureSize, recording.skin.positions.size()));
+    recording.frames.push_back(readFrame(in, postureSize, shapes, recording.skin.positions.size()));
   }
   eachStat(recording.stats,
            [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include <fascia/io/body_codec.h>
 #include <fascia/io/character_codecs.h>
 
 namespace fascia {
@@ -206,11 +207,25 @@ class DriverCodec final : public ObjectCodec<DriverDef> {
   };
 };
 
+CodecPtr<SoftSolidDef> softCodec() {
+  constexpr std::size_t kMaxHeld = 64;
+  auto codec = std::make_shared<ObjectCodec<SoftSolidDef>>(
+      "This solid is a soft body that sags, lags and jiggles (Witkin & Welch 1990).");
+  codec->field("basis", &SoftSolidDef::basis, bodyBasisCodec(),
+               "Which shapes it takes: affine stretches and shears, quadratic bends too");
+  addMaterialFields(*codec);
+  codec->field("held_m", &SoftSolidDef::held_m,
+               listOf<Vec3>(vectors({-1e6, 1e6}), kMaxHeld, Vec3::Zero()),
+               "Points in the solid's frame that the joint carries; otherwise some at the end "
+               "nearest to the joint");
+  return codec;
+}
+
 // The order in which a person reads a solid: what it is before where it is.
 int rank(std::string_view key) {
   static constexpr std::string_view kFirst[] = {"name", "joint", "shape"};
-  static constexpr std::string_view kLast[] = {"position_m", "orientation_deg", "color",
-                                               "deformations", "drivers"};
+  static constexpr std::string_view kLast[] = {"position_m",   "orientation_deg", "color",
+                                               "deformations", "drivers",         "soft"};
   const auto first = std::find(std::begin(kFirst), std::end(kFirst), key) - std::begin(kFirst);
   if (first < std::ssize(kFirst)) return static_cast<int>(first) - 10;
   const auto last = std::find(std::begin(kLast), std::end(kLast), key) - std::begin(kLast);
@@ -229,6 +244,7 @@ class SolidCodec final : public ObjectCodec<FleshSolidDef> {
     field("drivers", &FleshSolidDef::drivers,
           listOf<DriverDef>(std::make_shared<DriverCodec>(), kMaxListed),
           "Parameters that joint values drive");
+    field("soft", &FleshSolidDef::soft, optionally(softCodec()), "");
   }
 
   Json write(const FleshSolidDef& value) const override {

@@ -104,9 +104,14 @@ void addMuscles(const Character& character, const CharacterState& state,
   for (std::size_t i = 0; i < state.flesh.solidCount(); ++i) {
     const SolidId id(static_cast<std::int64_t>(i));
     Drawable muscle;
-    muscle.mesh = state.flesh.solid(id).tessellate(options.solid_detail);
+    // Fibres run through the undeformed matter and bend with it.
+    muscle.mesh = state.flesh.rigid().solid(id).tessellate(options.solid_detail);
     muscle.fibre_coordinates = fibreCoordinates(muscle.mesh);
-    muscle.world = state.flesh.frame(id);
+    const SolidId soft = state.flesh.softOf(id);
+    if (soft.valid())
+      deform(state.flesh.soft().map(soft), muscle.mesh);
+    else
+      muscle.world = state.flesh.frame(id);
     muscle.material.kind = Material::Kind::muscle;
     muscle.material.color = rgb(character.flesh().def(id).color);
     muscle.material.roughness = 0.36f;
@@ -183,7 +188,7 @@ Layers parseLayers(std::string_view text) {
 
 Box visibleBounds(const CharacterState& state, const TriangleMesh& skin, const Layers& layers) {
   Box box;
-  const auto addSolids = [&box](const PosedFlesh& flesh) {
+  const auto addSolids = [&box](const Field& flesh) {
     for (std::size_t i = 0; i < flesh.solidCount(); ++i)
       box.add(flesh.bounds(SolidId(static_cast<std::int64_t>(i))));
   };
