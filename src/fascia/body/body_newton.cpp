@@ -18,9 +18,8 @@ LineRule forceRule(BodyScheme scheme) {
 
 constexpr std::size_t kBodiesPerTask = 16;
 
-// What slides slowly comes to rest in a long tail of small corrections. After so many of Newton's
-// steps, corrections of this part of a body's size are the last: a tenth of a contact's margin.
-constexpr int kContactPatience = 12;
+// Corrections of contacts below this part of a body's size, a tenth of their margin, may be the
+// last.
 constexpr double kNearEnough = 1e-3;
 
 Eigen::Map<const Eigen::VectorXd> vectorOf(std::span<const double> x) {
@@ -92,7 +91,8 @@ BodyNewton::Result BodyNewton::solve(const OdeState& from, double h_s, double le
     result.correction = iterate(from, h_s, to.t_s);
     if (!std::isfinite(result.correction)) return result;
     result.converged = result.correction <= tolerance;
-    if (contacts_ && result.iterations >= kContactPatience && result.correction <= kNearEnough)
+    if (contacts_ && result.iterations >= options_.contact_patience &&
+        result.correction <= kNearEnough)
       break;
   }
   result.near = contacts_ && result.correction <= kNearEnough;

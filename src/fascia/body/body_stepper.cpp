@@ -35,6 +35,8 @@ BodyStepper::BodyStepper(BodySystem& system, const BodyStepperOptions& options)
               "a number in (0, 1)");
   checkOption(options.contact_tolerance > 0 && options.contact_tolerance < 1, "contact_tolerance",
               options.contact_tolerance, "a number in (0, 1)");
+  checkOption(options.contact_patience >= 1 && options.contact_patience <= 1000, "contact_patience",
+              options.contact_patience, "a number in [1, 1000]");
   checkOption(options.max_iterations >= 1 && options.max_iterations <= 1000, "max_iterations",
               options.max_iterations, "a number in [1, 1000]");
   if (system.contacts() && options.scheme != BodyScheme::implicitEuler)
