@@ -3,6 +3,7 @@
 #include <fascia/base/parallel.h>
 #include <fascia/body/body_field.h>
 
+#include "contact_scenes.h"
 #include "puppets.h"
 #include "scenes.h"
 #include "support/count_allocations.h"
@@ -74,6 +75,21 @@ TEST(Puppet, AllocatesOnlyWhenAControlBeginsOrEnds) {
   EXPECT_EQ(allocations - before, 0);
   puppet.hold(stage["left 0"]);
   EXPECT_GT(allocations - before, 0);
+}
+
+TEST(BodyStepper, AllocatesNothingForContactsThatStay) {
+  const ThreadLimit one(1);
+  test::BoxScene scene(std::vector<test::BoxKind>(4), {.ground_m = 0});
+  test::MovingSolid sphere(test::sphereDef(0.5));
+  sphere.center_m = Vec3(0.9, 0.8, 0);
+  scene.contacts->addObstacle(sphere);
+  for (int i = 0; i < 4; ++i) scene.place(i, Vec3(0, 0.102 + 0.202 * i, 0));
+  BodyStepper stepper(*scene.system);
+  for (int i = 0; i < 20; ++i) stepper.step(test::kFrame_s, scene.state);
+  const long before = allocations;
+  for (int i = 0; i < 20; ++i) stepper.step(test::kFrame_s, scene.state);
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_TRUE(scene.contacts->contacts().hasPairs());
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace fascia {
 
 struct ContactSettings {
-  std::optional<double> ground_m;  // the ground is y = ground_m; without it there is none
+  std::optional<double> ground_m{};  // the ground is y = ground_m; without it there is none
   // Coulomb's µ of all that is not given its own; of two surfaces the geometric mean counts.
   double friction = 0.5;  // [0, 10]
   // Surfaces press on each other from this distance on. 0: a hundredth of the body's size, of the

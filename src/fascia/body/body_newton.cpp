@@ -18,6 +18,10 @@ LineRule forceRule(BodyScheme scheme) {
 
 constexpr std::size_t kBodiesPerTask = 16;
 
+// Corrections of contacts below this part of a body's size, a tenth of their margin, may be the
+// last.
+constexpr double kNearEnough = 1e-3;
+
 Eigen::Map<const Eigen::VectorXd> vectorOf(std::span<const double> x) {
   return {x.data(), static_cast<Eigen::Index>(x.size())};
 }
@@ -80,7 +84,6 @@ BodyNewton::Result BodyNewton::solve(const OdeState& from, double h_s, double le
   guess(from, h_s, to.t_s);
   findContacts(from, h_s, lead_s);
   Result result;
-  result.touching = contacts_ != nullptr;
   const double tolerance = contacts_ ? options_.contact_tolerance : options_.tolerance;
   while (result.iterations < options_.max_iterations && !result.converged) {
     ++result.iterations;
@@ -88,7 +91,11 @@ BodyNewton::Result BodyNewton::solve(const OdeState& from, double h_s, double le
     result.correction = iterate(from, h_s, to.t_s);
     if (!std::isfinite(result.correction)) return result;
     result.converged = result.correction <= tolerance;
+    if (contacts_ && result.iterations >= options_.contact_patience &&
+        result.correction <= kNearEnough)
+      break;
   }
+  result.near = contacts_ && result.correction <= kNearEnough;
   if (contacts_) contacts_->evaluate(way_, ContactSet::Loads::follow);
   result.sound = true;
   for (std::size_t i = 0; i < way_.size(); ++i) {
@@ -106,7 +113,7 @@ double BodyNewton::iterate(const OdeState& from, double h_s, double t_s) {
   const bool sound = std::ranges::all_of(work_, &Work::sound);
   if (!sound || !solveConstraints(h_s)) return std::numeric_limits<double>::quiet_NaN();
   forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { correct(body); });
-  if (contacts_ && contacts_->hasPairs()) coupleContacts();
+  if (contacts_ && contacts_->pairsPress()) coupleContacts();
   forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { measure(body); });
   applyCorrections(from, h_s, t_s);
   double largest = 0;
@@ -188,7 +195,7 @@ bool BodyNewton::factor(BodyId body, const OdeState& from, double h_s) {
       const double weight = rule_.weights[i] * rule_.nodes[i];  // ∂(q + place Δ)/∂Δ = place
       shape.addStiffness(spanOf(work.q), weight, curvature, work.matrix);
     }
-    if (contacts_) contacts_->addCurvature(body, work.matrix);
+    if (!addContacts(body)) continue;
     if (!choleskyInPlace(work.matrix)) continue;
     respond(work);
     return true;
@@ -316,6 +323,7 @@ void BodyNewton::applyCorrections(const OdeState& from, double h_s, double t_s) 
       step *= 0.5;
     }
   }
+  if (contacts_) contacts_->setStep(step);
   for (std::size_t i = 0; i < way_.size(); ++i) way_[i] += step * correction_[i];
 }
 

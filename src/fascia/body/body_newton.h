@@ -22,7 +22,7 @@ class BodyNewton {
 
   struct Result {
     bool sound = false, converged = false;
-    bool touching = false;  // there were contacts to look at
+    bool near = false;      // as near to the tolerance as contacts are worth
     double correction = 0;  // the last one's largest part of a body's size
     int iterations = 0;
   };
@@ -34,9 +34,11 @@ class BodyNewton {
   // Everything of one body that an iteration writes.
   struct Work {
     Eigen::MatrixXd matrix, damping;  // A, and D at the start of the step; n × n
+    Eigen::MatrixXd trial;            // n × n, to see whether a part of A is positive
     // What the body answers to its own forces (column 0) and to unit forces at its terms' points
     // (dimension columns each): A⁻¹ residual, A⁻¹ (s ⊗ I); n rows.
     RowMatrix response;
+    RowMatrix inverse;  // A⁻¹, for conjugate gradients; padded columns
     // The same at its terms' points, (s ⊗ I)ᵀ of it; dimension rows for each term.
     RowMatrix atTerms;
     Eigen::VectorXd residual, q, force;  // n
@@ -65,6 +67,7 @@ class BodyNewton {
   // body_newton_contact.cpp
   void findContacts(const OdeState& from, double h_s, double lead_s);
   void evaluateContacts(int iteration);
+  bool addContacts(BodyId body);
   void coupleContacts();
   void precondition(std::span<const double> residual, std::span<double> z);
 

@@ -25,22 +25,6 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-// x ← (L Lᵀ)⁻¹ x for a single right side, along L's columns.
-void solveOne(const Eigen::MatrixXd& L, double* x) {
-  const Eigen::Index n = L.rows();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double* column = L.data() + j * n;
-    x[j] /= column[j];
-    for (Eigen::Index i = j + 1; i < n; ++i) x[i] -= column[i] * x[j];
-  }
-  for (Eigen::Index j = n; j-- > 0;) {
-    const double* column = L.data() + j * n;
-    double sum = x[j];
-    for (Eigen::Index i = j + 1; i < n; ++i) sum -= column[i] * x[i];
-    x[j] = sum / column[j];
-  }
-}
-
 }  // namespace
 
 void BodyNewton::findContacts(const OdeState& from, double h_s, double lead_s) {
@@ -52,6 +36,12 @@ void BodyNewton::findContacts(const OdeState& from, double h_s, double lead_s) {
   contacts_ = &set;
   for (auto* x : {&cgResidual_, &cgAnswer_, &cgDirection_, &cgImage_, &cgProduct_})
     x->resize(way_.size());
+  if (!set.hasPairs()) return;
+  for (Work& work : work_) {
+    const Eigen::Index n = work.residual.size();
+    work.inverse.resize(n, paddedColumns(n));
+    work.trial.resize(n, n);
+  }
 }
 
 void BodyNewton::evaluateContacts(int iteration) {
@@ -60,12 +50,30 @@ void BodyNewton::evaluateContacts(int iteration) {
                                                                 : ContactSet::Loads::keep);
 }
 
+// Adds to A. False if A is not positive without it: A with its own contacts may be, and the
+// equations of all bodies not, as bodies that touch may move together.
+bool BodyNewton::addContacts(BodyId body) {
+  if (!contacts_) return true;
+  Work& work = work_[body.index()];
+  if (contacts_->hasPairs()) {
+    work.trial = work.matrix;
+    if (!choleskyInPlace(work.trial)) return false;
+  }
+  contacts_->addCurvature(body, work.matrix);
+  return true;
+}
+
 // The correction so far solves the equations without C, the contacts' coupling of bodies. From
 // there conjugate gradients go on, within the constraints: their preconditioner is those equations
 // (Gould, Hribar & Nocedal 2001, algorithm 2.1). K p is kept as the sum of what the preconditioner
 // was given, K p = Σ ρ + C p up to forces Jᵀ λ, which no legal p feels.
 void BodyNewton::coupleContacts() {
   const std::size_t n = way_.size();
+  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) {
+    Work& work = work_[body.index()];
+    work.inverse.setIdentity();
+    choleskySolveInPlace(work.matrix, work.inverse);
+  });
   std::ranges::fill(cgResidual_, 0.0);
   contacts_->addCoupling(correction_, cgResidual_);
   for (double& x : cgResidual_) x = -x;
@@ -104,7 +112,14 @@ void BodyNewton::precondition(std::span<const double> residual, std::span<double
   const BodyModel& model = system_.model();
   std::ranges::copy(residual, z.begin());
   forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) {
-    solveOne(work_[body.index()].matrix, model.part(body, z).data());
+    const std::span<double> part = model.part(body, z);
+    const auto isZero = [](double x) { return x == 0; };
+    if (std::ranges::all_of(part, isZero)) return;  // it touches nobody
+    const auto n = static_cast<Eigen::Index>(part.size());
+    Work& work = work_[body.index()];
+    work.force = Eigen::Map<const Eigen::VectorXd>(part.data(), n);
+    Eigen::Map<Eigen::VectorXd>(part.data(), n).noalias() =
+        work.inverse.topLeftCorner(n, n) * work.force;
   });
   if (constraints_.size() == 0) return;
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] = -constraints_.jacobianTimes(i, z);

@@ -12,9 +12,6 @@ namespace {
 
 // A step that does not converge in 1/16 of its length will not in less.
 constexpr int kMaxHalvings = 4;
-// Contacts that come and go may keep Newton's method from its tolerance. If it ends this near, as a
-// part of a body's size, halving the step would cost more than it is worth.
-constexpr double kNearEnough = 1e-3;
 
 void checkOption(bool sound, const char* what, double found, const char* expected) {
   if (sound) return;
@@ -38,6 +35,8 @@ BodyStepper::BodyStepper(BodySystem& system, const BodyStepperOptions& options)
               "a number in (0, 1)");
   checkOption(options.contact_tolerance > 0 && options.contact_tolerance < 1, "contact_tolerance",
               options.contact_tolerance, "a number in (0, 1)");
+  checkOption(options.contact_patience >= 1 && options.contact_patience <= 1000, "contact_patience",
+              options.contact_patience, "a number in [1, 1000]");
   checkOption(options.max_iterations >= 1 && options.max_iterations <= 1000, "max_iterations",
               options.max_iterations, "a number in [1, 1000]");
   if (system.contacts() && options.scheme != BodyScheme::implicitEuler)
@@ -86,7 +85,7 @@ BodyStepper::Outcome BodyStepper::tryStep(double h_s, double lead_s, const OdeSt
   stats_.iterations += static_cast<std::uint64_t>(result.iterations);
   if (!result.sound) return Outcome::failed;
   if (result.converged) return Outcome::converged;
-  return result.touching && result.correction <= kNearEnough ? Outcome::near : Outcome::unconverged;
+  return result.near ? Outcome::near : Outcome::unconverged;
 }
 
 void BodyStepper::explicitStep(double h_s, const OdeState& from, OdeState& to) {

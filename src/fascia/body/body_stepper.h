@@ -28,9 +28,11 @@ struct BodyStepperOptions {
   BodyScheme scheme = BodyScheme::implicitEuler;
   // Newton's corrections below this part of a body's size end a step.
   double tolerance = 1e-10;  // (0, 1)
-  // The same for steps in which there are contacts. Their gaps are a hundredth of a body, so that
-  // they hardly gain by more; it costs an iteration or two.
-  double contact_tolerance = 1e-5;  // (0, 1)
+  // The same for steps in which there are contacts, whose gaps are a hundredth of a body. What
+  // slides slowly comes to rest in a long tail of small corrections: after so many iterations those
+  // below a thousandth end the step too. Larger: slides and blows are more exact, and dearer.
+  double contact_tolerance = 1e-4;  // (0, 1)
+  int contact_patience = 12;        // [1, 1000]
   int max_iterations = 30;          // [1, 1000]; with 1 a step is linearly implicit: the cheapest
 };
 

@@ -22,6 +22,22 @@ std::vector<Vec3> outlinePoints(const BodySurface& surface, double size_m) {
   return points;
 }
 
+// The farthest vertices along the diagonals, then along the axes and between them: corners.
+std::vector<std::size_t> extremePoints(const std::vector<Vec3>& vertices) {
+  std::vector<std::size_t> extremes;
+  if (vertices.empty()) return extremes;
+  for (const int nonzero : {3, 2, 1}) {
+    for (int code = 0; code < 27; ++code) {
+      const Vec3 direction(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
+      if ((direction.array() != 0).count() != nonzero) continue;
+      const auto along = [&](const Vec3& p) { return direction.dot(p); };
+      extremes.push_back(static_cast<std::size_t>(std::ranges::max_element(vertices, {}, along) -
+                                                  vertices.begin()));
+    }
+  }
+  return extremes;
+}
+
 }  // namespace
 
 ContactPoints makeContactPoints(const BodyShape& shape, const BodySurface& surface,
@@ -34,16 +50,18 @@ ContactPoints makeContactPoints(const BodyShape& shape, const BodySurface& surfa
   }
   ContactPoints points;
   std::vector<double> distance_m(vertices.size(), std::numeric_limits<double>::infinity());
-  const double same_m = kSame * shape.size_m();
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    if ((vertices[i] - shape.center_m()).norm() > (vertices[next] - shape.center_m()).norm())
-      next = i;
-  while (points.size() < std::min(count, vertices.size()) && distance_m[next] > same_m) {
-    points.X_m.push_back(vertices[next]);
+  const auto take = [&](std::size_t vertex) {
+    if (points.size() >= count || distance_m[vertex] <= kSame * shape.size_m()) return false;
+    points.X_m.push_back(vertices[vertex]);
     for (std::size_t i = 0; i < vertices.size(); ++i)
-      distance_m[i] = std::min(distance_m[i], (vertices[i] - points.X_m.back()).norm());
-    next = static_cast<std::size_t>(std::ranges::max_element(distance_m) - distance_m.begin());
+      distance_m[i] = std::min(distance_m[i], (vertices[i] - vertices[vertex]).norm());
+    return true;
+  };
+  for (const std::size_t vertex : extremePoints(vertices)) take(vertex);
+  const auto farthest = [&] {
+    return static_cast<std::size_t>(std::ranges::max_element(distance_m) - distance_m.begin());
+  };
+  while (!vertices.empty() && take(farthest())) {
   }
   points.weights.resize(shape.shapeCount(), static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)

@@ -15,9 +15,9 @@ struct ContactPoints {
   std::size_t size() const { return X_m.size(); }
 };
 
-// At most `count` vertices of the surface's mesh, spread by taking the farthest from those taken,
-// beginning with the one farthest from the centre of mass: corners and rims come first (Gonzalez
-// 1985). In two dimensions those of the outline, in the plane z = 0.
+// At most `count` vertices of the surface's mesh: first the outermost in 26 directions, which are
+// corners if there are any, then always the farthest from those taken (Gonzalez 1985). In two
+// dimensions those of the outline, in the plane z = 0.
 ContactPoints makeContactPoints(const BodyShape& shape, const BodySurface& surface,
                                 std::size_t count);
 

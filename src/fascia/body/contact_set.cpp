@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
-#include <fascia/body/for_each_body.h>
+#include <fascia/base/parallel.h>
 
 namespace fascia {
 namespace {
 
-constexpr std::size_t kContactsPerTask = 256, kBodiesPerTask = 64;
+// Friction's own curvature along a slide is 0, and Newton's method jumps over the point of rest; a
+// bound of it from above, f'/y, never does but comes near in small steps. So much of the bound.
+constexpr double kCurvatureShare = 0.6;
+
+constexpr std::size_t kContactsPerTask = 256;
 
 template <class Visit>
 void forEachContact(std::size_t count, Visit&& visit) {
@@ -24,6 +28,7 @@ ContactSet::ContactSet(const BodyModel& model) : model_(&model), dimension_(mode
 // Sorts the contacts' sides by body, in the order of contacts within each.
 void ContactSet::finish() {
   states_.resize(contacts_.size());
+  pressing_.reserve(contacts_.size());
   first_.assign(model_->bodyCount() + 1, 0);
   hasPairs_ = false;
   for (const Contact& contact : contacts_) {
@@ -60,6 +65,9 @@ Vec3 ContactSet::moved(const Contact::Side& side, std::span<const double> x) con
 
 void ContactSet::evaluate(std::span<const double> way, Loads loads) {
   forEachContact(contacts_.size(), [&](std::size_t i) { evaluateOne(i, way, loads); });
+  pressing_.clear();
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    if (contacts_[i].b.count > 0 && !states_[i].curvature_N_per_m.isZero(0)) pressing_.push_back(i);
 }
 
 void ContactSet::evaluateOne(std::size_t i, std::span<const double> way, Loads loads) {
@@ -69,10 +77,13 @@ void ContactSet::evaluateOne(std::size_t i, std::span<const double> way, Loads l
   state.slide_m = moved(contact.a, way) - moved(contact.b, way) - contact.drift_m;
   state.gap_m = contact.gap_m + n.dot(state.slide_m);
   const double normal_N = contact.energy.force_N(state.gap_m);
-  if (loads != Loads::keep) state.load_N = normal_N;
   if (loads == Loads::bound) {
-    const double bound_N = contact.inertia_N_per_m * (contact.energy.margin_m - state.gap_m);
-    state.load_N = std::min(normal_N, std::max(bound_N, 0.0));
+    const double stop_N = contact.inertia_N_per_m * (contact.energy.margin_m - state.gap_m);
+    const double rest_N = contact.energy.force_N(std::max(contact.gap_m, 0.0));
+    state.mostLoad_N = rest_N + std::max(stop_N, 0.0);
+    state.load_N = std::min(normal_N, state.mostLoad_N);
+  } else if (loads == Loads::follow) {
+    state.load_N = std::min(state.nextLoad_N, state.mostLoad_N);
   }
   state.force_N = normal_N * n;
   state.curvature_N_per_m = contact.energy.curvature_N_per_m(state.gap_m) * (n * n.transpose());
@@ -86,8 +97,11 @@ void ContactSet::evaluateOne(std::size_t i, std::span<const double> way, Loads l
   Mat3 across = Mat3::Identity() - n * n.transpose();
   if (dimension_ == 2) across(2, 2) = 0;
   Mat3 curvature = slope * across;
-  if (y > 0)
-    curvature += (slide.curvature_per_m(y) - slope) / (y * y) * (along * along.transpose());
+  if (y > 0) {
+    const double least = kCurvatureShare * slope;
+    const double alongCurvature = std::max(slide.curvature_per_m(y), least);
+    curvature += (alongCurvature - slope) / (y * y) * (along * along.transpose());
+  }
   state.curvature_N_per_m += friction_N * curvature;
 }
 
@@ -122,33 +136,36 @@ void ContactSet::addCurvature(BodyId body, Eigen::Ref<Eigen::MatrixXd> matrix) c
   }
 }
 
-void ContactSet::addCoupling(std::span<const double> x, std::span<double> out) {
-  forEachContact(contacts_.size(), [&](std::size_t i) {
+void ContactSet::addCoupling(std::span<const double> x, std::span<double> out) const {
+  const auto subtract = [&](const Contact::Side& side, const Vec3& force) {
+    double* target = out.data() + side.offset;
+    for (int j = 0; j < side.count; ++j)
+      for (int row = 0; row < dimension_; ++row)
+        target[dimension_ * j + row] -= side.weights[j] * force[row];
+  };
+  for (const std::size_t i : pressing_) {
     const Contact& contact = contacts_[i];
-    if (contact.b.count == 0) return;
-    State& state = states_[i];
-    state.onA.noalias() = state.curvature_N_per_m * moved(contact.b, x);
-    state.onB.noalias() = state.curvature_N_per_m * moved(contact.a, x);
-  });
-  const int d = dimension_;
-  forEachBody(model_->bodyCount(), kBodiesPerTask, [&](BodyId body) {
-    for (const Entry& entry : entriesOf(body)) {
-      const Contact& contact = contacts_[entry.contact];
-      if (contact.b.count == 0) continue;
-      const Contact::Side& side = entry.isB ? contact.b : contact.a;
-      const Vec3& force = entry.isB ? states_[entry.contact].onB : states_[entry.contact].onA;
-      double* target = out.data() + side.offset;
-      for (int j = 0; j < side.count; ++j)
-        for (int row = 0; row < d; ++row) target[d * j + row] -= side.weights[j] * force[row];
-    }
-  });
+    const Mat3& H = states_[i].curvature_N_per_m;
+    const Vec3 onA = H * moved(contact.b, x), onB = H * moved(contact.a, x);
+    subtract(contact.a, onA);
+    subtract(contact.b, onB);
+  }
 }
 
 void ContactSet::setDirection(std::span<const double> direction) {
   forEachContact(contacts_.size(), [&](std::size_t i) {
-    states_[i].directionSlide_m =
-        moved(contacts_[i].a, direction) - moved(contacts_[i].b, direction);
+    const Contact& contact = contacts_[i];
+    State& state = states_[i];
+    state.directionSlide_m = moved(contact.a, direction) - moved(contact.b, direction);
+    const double rise_m = contact.normal.dot(state.directionSlide_m);
+    state.nextLoad_N = std::max(0.0, contact.energy.force_N(state.gap_m) -
+                                         contact.energy.curvature_N_per_m(state.gap_m) * rise_m);
   });
+}
+
+void ContactSet::setStep(double step) {
+  for (State& state : states_)
+    state.nextLoad_N = state.load_N + step * (state.nextLoad_N - state.load_N);
 }
 
 double ContactSet::merit_J(double step) const {

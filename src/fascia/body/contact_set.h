@@ -40,7 +40,8 @@ class ContactSet {
 
   bool empty() const { return contacts_.empty(); }
   std::size_t size() const { return contacts_.size(); }
-  bool hasPairs() const { return hasPairs_; }
+  bool hasPairs() const { return hasPairs_; }             // contacts between bodies
+  bool pairsPress() const { return !pressing_.empty(); }  // at the last evaluate()
   const Contact& operator[](std::size_t i) const { return contacts_[i]; }
   double gap_m(std::size_t i) const { return states_[i].gap_m; }
   // The normal force, at the last evaluate() whose loads were `follow`.
@@ -49,8 +50,8 @@ class ContactSet {
 
   // What the normal forces that friction goes by (λ) do at this evaluation.
   enum class Loads {
-    bound,   // follow, but not beyond what takes the body out of the obstacle in this step
-    follow,  // be those of the present way
+    bound,   // be those of the present way, but no more than stops the body in this step
+    follow,  // be those that the last step along a direction brought about
     keep,    // stay
   };
   void evaluate(std::span<const double> way, Loads loads);
@@ -59,20 +60,21 @@ class ContactSet {
   void addGradient(BodyId body, Eigen::Ref<Eigen::VectorXd> residual) const;
   void addCurvature(BodyId body, Eigen::Ref<Eigen::MatrixXd> matrix) const;
   // out += C x with the rest of the derivatives, between bodies.
-  void addCoupling(std::span<const double> x, std::span<double> out);
+  void addCoupling(std::span<const double> x, std::span<double> out) const;
 
   // The merit's part along a search direction, J.
   void setDirection(std::span<const double> direction);
   double merit_J(double step) const;
+  void setStep(double step);   // how far along it the way goes on
   double gapEnergy_J() const;  // as of the last evaluate()
 
  private:
   struct State {
-    double gap_m = 0, load_N = 0;
+    double gap_m = 0, load_N = 0, mostLoad_N = 0;
     Vec3 slide_m, force_N;   // u, and the force on a
     Mat3 curvature_N_per_m;  // H: the gradient's derivative by u
+    double nextLoad_N = 0;   // after it, by the linear equations
     Vec3 directionSlide_m;   // how u changes along the search direction
-    Vec3 onA, onB;           // what addCoupling() finds
   };
   struct Entry {
     std::uint32_t contact;
@@ -92,6 +94,7 @@ class ContactSet {
   std::vector<State> states_;
   std::vector<std::size_t> first_;  // bodyCount + 1: entries of a body
   std::vector<Entry> entries_;
+  std::vector<std::size_t> pressing_;  // contacts between bodies that do anything now
 };
 
 }  // namespace fascia
