@@ -78,6 +78,14 @@ TEST(Sandbox, StopsLoopsThatNeverWait) {
       "while true do tonumber(('1'):rep(1000000)) end",
       "while true do string.format('%99.99f', 1e308) end",
       "while true do tostring(vec(1, 2)) end",
+      // The length of such a table is 2^62.
+      "local t = {} for k = 0, 62 do t[1 << k] = 1 end t[5] = 1 t[9] = 1 table.insert(t, 1, 0)",
+      "local t = {} for k = 0, 62 do t[1 << k] = 1 end t[5] = 1 t[9] = 1 table.remove(t, 1)",
+      "local t = {} for k = 0, 62 do t[1 << k] = 1 end t[5] = 1 t[9] = 1 table.sort(t)",
+      "local t = {} for k = 0, 62 do t[1 << k] = 1 end t[5] = 1 t[9] = 1 follow('left 0', t)",
+      "local t = {} for k = 0, 62 do t[1 << k] = 1 end t[5] = 1 t[9] = 1 table.unpack(t)",
+      "local t = {} for k = 0, 62 do t[1 << k] = 1 end t[5] = 1 t[9] = 1 for i = 1, #t do end",
+      "local t = {} for k = 0, 62 do t[1 << k] = 1 end t[5] = 1 t[9] = 1 table.concat(t)",
   };
   for (const char* text : loops) {
     const Issue issue = issueOf(text, {.instructions_per_update = 300000, .wall_clock_s = 0.05});
@@ -156,6 +164,15 @@ TEST(Sandbox, LimitsTasksTiesAndLines) {
   ASSERT_EQ(play.script.log().size(), 3u);
   EXPECT_LT(play.script.log()[0].text.size(), 1100u);
   EXPECT_EQ(play.script.log()[2].text, "… and more lines");
+}
+
+TEST(Sandbox, CutsLongTexts) {
+  EXPECT_EQ(logOf("local s = ('x'):rep(1e6) local t = {} for i = 1, 20000 do t[i] = s end "
+                  "log(table.unpack(t))")
+                .size(),
+            1000 + std::string("…").size());
+  EXPECT_LT(issueOf("error(('x'):rep(1e6))").message.size(), 1100u);
+  EXPECT_LT(issueOf("hold(('x'):rep(1e6))").message.size(), 300u);
 }
 
 TEST(Sandbox, SurvivesScriptsThatBreakTheirOwnLibrary) {

@@ -188,10 +188,13 @@ TEST(Script, HasSafeLibraries) {
     table.sort(list) log(table.concat(list, " "))
     table.sort(list, function(a, b) return a > b end) log(table.concat(list, " "))
     for i, v in ipairs({"p", "q"}) do log(i, v) end
+    table.insert(list, 0) table.insert(list, 1, 6) table.insert(list, 8, 9)
+    log(table.concat(list, " "), table.remove(list), table.remove(list, 1), table.remove(list, 2),
+        table.concat(list, " "), table.remove({}), table.remove({}, 1))
     log(select("#", table.unpack({1, 2})), tonumber("12"), type(log))
   )"),
             "2 3 x-x-x AB 4; 1.23|(1, 2, 0)|3|%p table nil;1 x;2 y;a 2;b 3;c 1;true 0;"
-            "1 2 3 4 5;5 4 3 2 1;1 p;2 q;2 12 function");
+            "1 2 3 4 5;5 4 3 2 1;1 p;2 q;6 5 4 3 2 1 0 9 9 6 4 5 3 2 1 0 nil nil;2 12 function");
 }
 
 TEST(Script, SortsStably) {
@@ -270,6 +273,8 @@ TEST(ScriptErrors, CheckArguments) {
   expectIssue("position()", 1, "position(): point: found nothing, expected the name of a point");
   expectIssue("time(1)", 1, "time(1): found 1 arguments, expected 0 at most");
   expectIssue("start(3)", 1, "start(3): task: found 3, expected a function");
+  expectIssue("parallel(start, start, 3)", 1,
+              "parallel(…, …, 3): functions: found 3, expected a function");
   expectIssue("cancel({})", 1, "cancel(…): task: found a table, expected what start() gave");
   expectIssue("cancel(vec(1, 2))", 1,
               "cancel(…): task: found a userdata, expected what start() gave");
@@ -305,6 +310,8 @@ TEST(ScriptErrors, TellWhatLuaSays) {
   expectIssue("local v = vec(1, 2) v.x = 3", 1, "the numbers of a vec do not change",
               "make a new one: vec(x, y, z)");
   expectIssue("log(vec(1, 2) + 3)", 1, "vec: found a number, expected a vec");
+  expectIssue("table.insert({}, 3, 1)", 1, "bad argument #2 to 'insert' (position out of bounds)");
+  expectIssue("table.remove({}, 'x')", 1, "bad argument #2 to 'remove' (position out of bounds)");
   expectIssue("table.sort(3)", 1, "bad argument #1 to 'sort' (table expected)");
 }
 

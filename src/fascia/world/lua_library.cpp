@@ -13,8 +13,9 @@
 // hash seeds, nor runs long in C, where no hook can stop it. Left out for that: io, os, package,
 // debug, coroutine, utf8; load and its like; pcall, which would catch what is to end a script;
 // metatables; patterns, which may take exponential time; table.move, string.pack and string.dump.
-// Written anew: string.rep (for ever, with empty strings), pairs (its order changes from run to
-// run), table.sort (so do its pivots), tostring and string.format (addresses).
+// Written anew: string.rep (for ever, with empty strings), table.insert and table.remove (the same,
+// with a table whose few entries are so placed that its length is 2^62), pairs (its order changes
+// from run to run), table.sort (so do its pivots), tostring and string.format (addresses).
 
 namespace fascia {
 namespace {
@@ -27,15 +28,47 @@ constexpr const char* kMath[] = {
     "rad",  "sin",  "sqrt", "tan",  "type",       "tointeger",  "ult"};
 constexpr const char* kString[] = {"byte",  "char",    "format", "len",
                                    "lower", "reverse", "sub",    "upper"};
-constexpr const char* kTable[] = {"concat", "insert", "pack", "remove", "unpack"};
+constexpr const char* kTable[] = {"concat", "pack", "unpack"};
 
-// A stable merge sort. In Lua, so that its instructions count and `less` may be any function.
-constexpr const char* kSort = R"lua(
-local type, error = type, error
+// In Lua, so that instructions count and functions given may be any. The sort is a stable merge.
+constexpr const char* kTableFunctions = R"lua(
+local type, error, select = type, error, select
+
+local function check(list, name)
+  if type(list) ~= "table" then
+    error("bad argument #1 to '" .. name .. "' (table expected)", 3)
+  end
+  return #list
+end
+
+local function checkPosition(position, last, name)
+  if type(position) ~= "number" or position < 1 or position > last or position % 1 ~= 0 then
+    error("bad argument #2 to '" .. name .. "' (position out of bounds)", 3)
+  end
+end
+
+function table.insert(list, ...)
+  local count = check(list, "insert") + 1
+  if select("#", ...) == 1 then list[count] = (...) return end
+  local position, value = ...
+  checkPosition(position, count, "insert")
+  for i = count, position + 1, -1 do list[i] = list[i - 1] end
+  list[position] = value
+end
+
+function table.remove(list, position)
+  local count = check(list, "remove")
+  if count == 0 and position == nil then return nil end
+  position = position or count
+  checkPosition(position, count + 1, "remove")
+  local value = list[position]
+  for i = position, count do list[i] = list[i + 1] end
+  return value
+end
+
 function table.sort(list, less)
-  if type(list) ~= "table" then error("bad argument #1 to 'sort' (table expected)", 2) end
   less = less or function(a, b) return a < b end
-  local count, from, to, width = #list, list, {}, 1
+  local count, from, to, width = check(list, "sort"), list, {}, 1
   while width < count do
     for first = 1, count, 2 * width do
       local middle, last = first + width, first + 2 * width
@@ -229,7 +262,8 @@ void openSafeLibraries(lua_State* L) {
   lua_rawseti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
   lua_pushnil(L);
   lua_setfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
-  if (luaL_loadbufferx(L, kSort, std::strlen(kSort), LuaSandbox::kLibraryChunk, "t") != LUA_OK)
+  if (luaL_loadbufferx(L, kTableFunctions, std::strlen(kTableFunctions), LuaSandbox::kLibraryChunk,
+                       "t") != LUA_OK)
     lua_error(L);
   lua_call(L, 0, 0);
 }

@@ -176,6 +176,8 @@ Issue LuaSandbox::textIssue(lua_State* thread) const {
   std::string text = lua_type(thread, -1) == LUA_TSTRING
                          ? std::string(lua_tostring(thread, -1))
                          : "error of type " + std::string(luaL_typename(thread, -1));
+  constexpr std::size_t kLongest = 1000;
+  if (text.size() > kLongest) text.resize(kLongest), text += "…";
   const int line = cutPosition(text, kScriptChunk);
   cutPosition(text, kLibraryChunk);
   Issue issue = explainCall(thread, text);

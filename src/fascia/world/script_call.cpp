@@ -1,5 +1,6 @@
 #include <fascia/world/script_call.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -80,7 +81,9 @@ void refuseValue(lua_State* L, int index, const std::string& what, const std::st
 }
 
 std::string ScriptCall::nameOf(int i) const {
-  return std::string(function_.parameters[static_cast<std::size_t>(i) - 1].name);
+  // The last one may stand for any number of them.
+  const std::size_t last = function_.parameters.size() - 1;
+  return std::string(function_.parameters[std::min(static_cast<std::size_t>(i) - 1, last)].name);
 }
 
 void ScriptCall::refuse(int i, const std::string& expected) const {

@@ -77,7 +77,10 @@ std::vector<PathKey> readKeys(const ScriptCall& call, int index) {
   lua_State* L = call.L;
   if (lua_type(L, index) != LUA_TTABLE)
     refuseValue(L, index, "keys", "a list such as {{0, {0, 1}}, {0.5, {1, 1}}}");
+  constexpr lua_Unsigned kMostKeys = 1000;
   std::vector<PathKey> keys;
+  if (lua_rawlen(L, index) > kMostKeys)
+    throw Error("keys: found more than " + std::to_string(kMostKeys));
   const auto count = static_cast<lua_Integer>(lua_rawlen(L, index));
   call.host.charge(L, 20 * count);
   for (lua_Integer i = 1; i <= count; ++i) {

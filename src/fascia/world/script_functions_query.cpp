@@ -49,7 +49,7 @@ int vec(ScriptCall& call) {
 int log(ScriptCall& call) {
   const int count = call.count();
   std::string line;
-  for (int i = 1; i <= count; ++i) {
+  for (int i = 1; i <= count && line.size() <= ScriptHost::kLongestLine; ++i) {
     pushText(call.L, i);
     std::size_t length = 0;
     const char* text = lua_tolstring(call.L, -1, &length);

@@ -53,8 +53,9 @@ int ScriptHost::startTask(lua_State* L, int index) {
 }
 
 ScriptTask* ScriptHost::findTask(int id) const {
-  const auto found = std::ranges::find(tasks_, id, [](const auto& task) { return task->id; });
-  return found == tasks_.end() ? nullptr : found->get();
+  const auto idOf = [](const auto& task) { return task->id; };
+  const auto found = std::ranges::lower_bound(tasks_, id, {}, idOf);
+  return found == tasks_.end() || (*found)->id != id ? nullptr : found->get();
 }
 
 bool ScriptHost::taskRuns(int id) const {
@@ -72,10 +73,9 @@ void ScriptHost::cancelTask(int id) {
 }
 
 void ScriptHost::log(std::string text) {
-  constexpr std::size_t kLongest = 1000;
   if (log_.size() > static_cast<std::size_t>(limits_.log_lines)) return;
   if (log_.size() == static_cast<std::size_t>(limits_.log_lines)) text = "… and more lines";
-  if (text.size() > kLongest) text.resize(kLongest), text += "…";
+  if (text.size() > kLongestLine) text.resize(kLongestLine), text += "…";
   log_.push_back({puppet_->time_s(), std::move(text)});
 }
 

@@ -45,6 +45,7 @@ class ScriptHost : public LuaSandbox {
   void cancelTask(int id);
   bool taskRuns(int id) const;
   void log(std::string text);
+  static constexpr std::size_t kLongestLine = 1000;  // of the log; the rest is left out
   // Ends the script: raises a Lua error that no script can catch.
   [[noreturn]] void end(lua_State* L, ScriptOutcome outcome, std::string reason);
 
