@@ -13,6 +13,8 @@ TEST(Allocation, AdvancingMakesNoneAfterWarmUp) {
   for (const int side : {16, 80}) {  // the second rides on a coarse grid
     CharacterDef def = test::fineCharacter(side);
     def.skin->material.bending_Nm = side == 16 ? 1e-3 : 0;
+    SoftSolidDef& soft = def.flesh.solids[1].soft.emplace();
+    if (side == 16) soft.basis.kind = BodyBasisDef::Kind::polynomial;
     const Character character(def);
     ASSERT_EQ(character.skin()->coarse() != nullptr, side == 80);
     CharacterState state = initialState(character, 0);

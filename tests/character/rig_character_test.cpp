@@ -31,6 +31,43 @@ CharacterDef fleshOut(const std::string& file) {
   return def;
 }
 
+TEST(RigCharacter, SkinFeelsSoftFlesh) {
+  const auto file = assetFile("mesh2motion-cc0/fox-animations.glb");
+  if (!file) GTEST_SKIP() << "the shared assets are not here";
+  CharacterDef def = fleshOut(file->string());
+  const Character rigid(def);
+  SolidId largest;
+  for (std::size_t i = 0; i < def.flesh.solids.size(); ++i) {
+    const SolidId id(static_cast<std::int64_t>(i));
+    const auto volume_m3 = [&](SolidId s) { return rigid.flesh().restSolid(s).volume_m3(); };
+    if (!largest.valid() || volume_m3(id) > volume_m3(largest)) largest = id;
+  }
+  FleshSolidDef& solid = def.flesh.solids[largest.index()];
+  solid.drivers.clear();
+  SoftSolidDef& soft = solid.soft.emplace();
+  soft.basis.kind = BodyBasisDef::Kind::polynomial;
+  soft.rigidity_Pa = 4e3, soft.volume_Pa = 1e4;
+  const Character character(def);
+  const int walk = character.findMotion("Walk");
+  CharacterState state = initialState(character, walk), before = initialState(rigid, walk);
+  SkinStats stats, ignored;
+  for (int frame = 0; frame < 10; ++frame) {
+    advance(character, walk, 1.0 / 30, state, stats);
+    advance(rigid, walk, 1.0 / 30, before, ignored);
+    measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin, stats);
+  }
+  const double height_m = def.rig->model->height_m();
+  float farthest_m = 0;
+  for (std::size_t k = 0; k < state.skin.position.size(); ++k)
+    farthest_m =
+        std::max(farthest_m, std::hypot(state.skin.position.x[k] - before.skin.position.x[k],
+                                        state.skin.position.y[k] - before.skin.position.y[k],
+                                        state.skin.position.z[k] - before.skin.position.z[k]));
+  EXPECT_GT(farthest_m, 1e-3 * height_m);
+  EXPECT_LT(stats.max_penetration_m, 1e-3 * height_m);
+  EXPECT_EQ(stats.repaired_points, 0u);
+}
+
 TEST(RigCharacter, WalksInItsSkin) {
   const auto file = assetFile("mesh2motion-cc0/fox-animations.glb");
   if (!file) GTEST_SKIP() << "the shared assets are not here";

@@ -81,6 +81,12 @@ TEST(CharacterFile, FullTextIsUnderstood) {
   EXPECT_DOUBLE_EQ(biceps.drivers[0].points[1].jointValue, radians(120));
   EXPECT_EQ(biceps.drivers[0].points[1].parameter, 0.08);
   EXPECT_EQ(biceps.color.r, 0xb8 / 255.0f);
+  EXPECT_FALSE(biceps.soft);
+  const SoftSolidDef& soft = def.flesh.solids[2].soft.value();
+  EXPECT_EQ(soft.basis.cells, Eigen::Vector3i(2, 1, 1));
+  EXPECT_EQ(soft.density_kg_per_m3, 900);
+  EXPECT_EQ(soft.rigidity_Pa, SoftSolidDef().rigidity_Pa);
+  EXPECT_EQ(soft.held_m[1], Vec3(0.02, 0.03, 0.01));
   EXPECT_EQ(def.skin->regions[0].u_min, 0.8);
   ASSERT_EQ(def.skin->points->fat.size(), 6u);
   EXPECT_EQ(def.skin->points->fat[2], 0.012f);
@@ -121,6 +127,19 @@ TEST(CharacterFile, DegreesStayAsTyped) {
   }
 }
 
+TEST(CharacterFile, EveryBasisComesBack) {
+  using Kind = BodyBasisDef::Kind;
+  for (const auto& [basis, text] : std::vector<std::pair<BodyBasisDef, std::string>>{
+           {{Kind::polynomial, 2, {1, 1, 1}}, "\"quadratic\""},
+           {{Kind::polynomial, 3, {1, 1, 1}}, "{\"polynomial\": 3}"},
+           {{Kind::lattice, 2, {3, 2, 1}}, "{\"lattice\": [3, 2, 1]}"}}) {
+    CharacterDef def = readCharacterText(sample::kFull).def;
+    def.flesh.solids[2].soft->basis = basis;
+    EXPECT_THAT(characterText(def), HasSubstr("\"basis\": " + text));
+    EXPECT_EQ(readCharacterText(characterText(def)).def.flesh.solids[2].soft->basis, basis);
+  }
+}
+
 TEST(CharacterFile, WritingRefusesNaN) {
   CharacterDef def = readCharacterText(sample::kMinimal).def;
   def.skin->fat.thickness_m = std::nan("");
@@ -152,6 +171,16 @@ TEST(CharacterFile, EveryFaultSaysWhereItIs) {
        "[1, 1000]"},
       {"key unit", "\"value_m\": 0.1", "\"value_deg\": 0.1", "/motions/0/tracks/1/keys/0/value_deg",
        "unknown key"},
+      {"basis", "{\"lattice\": [2, 1, 1]}", "\"cubic\"", "/solids/2/soft/basis", "quadratic"},
+      {"cells", "{\"lattice\": [2, 1, 1]}", "{\"lattice\": [2]}", "/solids/2/soft/basis/lattice",
+       "two or three"},
+      {"many cells", "{\"lattice\": [2, 1, 1]}", "{\"lattice\": [2, 7, 1]}",
+       "/solids/2/soft/basis/lattice/1", "[1, 6]"},
+      {"order", "{\"lattice\": [2, 1, 1]}", "{\"polynomial\": 1.5}",
+       "/solids/2/soft/basis/polynomial", "whole number"},
+      {"density", "\"density_kg_per_m3\": 900", "\"density_kg_per_m3\": 0",
+       "/solids/2/soft/density_kg_per_m3", "(0, 1e6]"},
+      {"held point", "[0.02, 0.03, 0.01]", "[0.02, 0.03]", "/solids/2/soft/held_m/1", "3 numbers"},
   };
   for (const BadInput& input : inputs) {
     const std::string text = replaced(sample::kFull, input.from, input.to);

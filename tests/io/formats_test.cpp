@@ -98,6 +98,22 @@ TEST(Cache, ComesBackExactly) {
   EXPECT_EQ(out.state_hash, in.state_hash);
 }
 
+TEST(Cache, KeepsTheShapesOfSoftSolids) {
+  const sample::Folder folder;
+  const CharacterDef def = readCharacterText(sample::kFull).def;
+  Recording in = sample::tube(3, 4);
+  for (std::size_t f = 0; f < in.frames.size(); ++f)
+    in.frames[f].soft_shapes = {0.1, 0.2 * static_cast<double>(f), -3};
+  writeCache(def, in, folder / "a.fcache");
+  const Recording out = readCache(folder / "a.fcache").recording;
+  for (std::size_t f = 0; f < in.frames.size(); ++f) {
+    EXPECT_EQ(out.frames[f].soft_shapes, in.frames[f].soft_shapes);
+    EXPECT_EQ(out.frames[f].skin_m, in.frames[f].skin_m);
+  }
+  in.frames[2].soft_shapes.pop_back();
+  EXPECT_THROW(writeCache(def, in, folder / "b.fcache"), Error);
+}
+
 TEST(Cache, RefusesEveryTruncation) {
   const sample::Folder folder;
   writeCache(readCharacterText(sample::kMinimal).def, sample::tube(0, 2), folder / "a");

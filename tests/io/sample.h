@@ -69,7 +69,19 @@ inline const char* const kFull = R"({
         }
       ]
     },
-    {"name": "bone", "joint": "elbow", "shape": "sphere", "radius_m": 0.07}
+    {"name": "bone", "joint": "elbow", "shape": "sphere", "radius_m": 0.07},
+    {
+      "name": "calf",
+      "joint": "elbow",
+      "shape": "sphere",
+      "radius_m": 0.06,
+      "position_m": [0, -0.1, 0.03],
+      "soft": {
+        "basis": {"lattice": [2, 1, 1]},
+        "density_kg_per_m3": 900,
+        "held_m": [[0, 0.03, 0], [0.02, 0.03, 0.01]]
+      }
+    }
   ],
   "ornaments": [
     {

@@ -52,9 +52,8 @@ Vec3 corner(const Box& box, std::size_t c) {
           c & 4 ? box.high.z() : box.low.z()};
 }
 
-void writeClearance(const BodyMap& map, const Vec3& x, float& distance_m, Vectors normal,
+void writeClearance(const BodyMap::Clearance& clearance, float& distance_m, Vectors normal,
                     std::size_t i) {
-  const BodyMap::Clearance clearance = map.clearance(x);
   distance_m = static_cast<float>(clearance.distance_m);
   set(normal, i, clearance.away);
 }
@@ -77,7 +76,7 @@ BodyField::BodyField(const BodyModel& model, std::span<const BodySurfacePtr> sur
     const BodyShapePtr& shape = model.sharedShape(body);
     parts->push_back({body, model.offset(body), static_cast<std::size_t>(shape->coordinateCount()),
                       surfaces[b]});
-    posed_.push_back({BodyMap(shape, surfaces[b]->bounds_m()), {}, {}});
+    posed_.push_back({BodyMap(shape, surfaces[b]->bounds_m(), surfaces[b]->mesh()), {}, {}});
     finish(parts->back(), posed_.back());
   }
   parts_ = std::move(parts);
@@ -125,7 +124,7 @@ void BodyField::evaluateAffine(std::size_t solid, ConstVectors points, float* di
   const BodyMap::Inverse center = map.inverse(map.center().x_m);
   if (!center.found) {
     for (std::size_t i = 0; i < points.count; ++i)
-      writeClearance(map, at(points, i), distance_m[i], normal, i);
+      writeClearance(map.planeClearance(at(points, i)), distance_m[i], normal, i);
     return;
   }
   const Mat3 inverse = center.gradient.inverse();
@@ -155,7 +154,7 @@ void BodyField::evaluateCurved(std::size_t solid, ConstVectors points, float* di
     const bool far = squaredDistance(bounds, x) > far_m * far_m;
     const BodyMap::Inverse found = far ? BodyMap::Inverse{} : map.inverse(x);
     if (far || !found.found) {
-      writeClearance(map, x, distance_m[i], normal, i);
+      writeClearance(far ? map.boxClearance(x) : map.planeClearance(x), distance_m[i], normal, i);
       continue;
     }
     set(X.view(kChunk), count, found.X_m);

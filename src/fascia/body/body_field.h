@@ -15,8 +15,8 @@ namespace fascia {
 // when it bends. A plain value; copies share what does not change.
 //
 // Distances are first order in d, the undeformed distance over the length of F⁻ᵀ n, as those of
-// deformed solids (Barr 1984): exact on the surface. Where the map cannot be inverted, and far
-// outside, they are no larger than those from a box around the body or from its nearest samples.
+// deformed solids (Barr 1984): exact on the surface. Where the map cannot be inverted, they are
+// those from the nearest of some tangent planes; far outside, from a box around the body.
 class BodyField final : public Field {
  public:
   BodyField() = default;

@@ -19,16 +19,18 @@ constexpr int kMaxHalvings = 8;
 constexpr double kTolerance = 1e-10, kFoundTolerance = 1e-7;
 // Gradients that squeeze volume below this part cannot be inverted in any useful way.
 constexpr double kLeastDeterminant = 1e-9;
+constexpr double kSlopeStep = 1e-3;  // of the body's size, between gradients that are compared
 // A guess this near, in parts of the body's size, is good enough to start from.
 constexpr double kNearGuess = 0.05;
 constexpr int kMinSamples = 3, kMaxSamples = 6;  // along each axis
+constexpr std::size_t kMostSurfacePoints = 600;  // each costs in every set(), and in searches
 
 using ShapeBuffer = std::array<double, BodyMap::kMaxShapes>;
 using GradientBuffer = std::array<double, 3 * BodyMap::kMaxShapes>;
 
 }  // namespace
 
-BodyMap::BodyMap(BodyShapePtr shape, const Box& domain_m) {
+BodyMap::BodyMap(BodyShapePtr shape, const Box& domain_m, const TriangleMesh& surface) {
   auto constant = std::make_shared<Constant>();
   Constant& c = *constant;
   const Basis& basis = shape->basis();
@@ -50,6 +52,12 @@ BodyMap::BodyMap(BodyShapePtr shape, const Box& domain_m) {
       for (int i = 0; i < count; ++i)
         c.samples_m.emplace_back(domain_m.low +
                                  domain_m.size().cwiseProduct(Vec3(i, j, k) / (count - 1)));
+  c.latticeCount = c.samples_m.size();
+  const std::size_t stride = 1 + surface.positions.size() / kMostSurfacePoints;
+  for (std::size_t i = 0; i < surface.normals.size(); i += stride) {
+    c.samples_m.push_back(surface.positions[i].cast<double>());
+    c.normals.push_back(surface.normals[i].cast<double>());
+  }
   const auto samples = static_cast<Eigen::Index>(c.samples_m.size());
   c.sampleValues.resize(c.shapeCount, samples);
   for (Eigen::Index i = 0; i < samples; ++i)
@@ -107,6 +115,23 @@ BodyMap::Tangent BodyMap::tangentOf(const Eigen::MatrixXd& R, const Vec3& X, boo
   return t;
 }
 
+// ∂x/∂X of the straight continuation too: there the tangent itself changes along the box, by the
+// second derivative across it, which is the difference of gradients across it (exact for quadratic
+// bodies).
+Mat3 BodyMap::slope(const Vec3& X, const Mat3& gradient) const {
+  const Constant& c = *constant_;
+  const Vec3 near = X.cwiseMax(c.reach_m.low).cwiseMin(c.reach_m.high);
+  const Vec3 beyond = X - near;
+  const double way_m = beyond.norm();
+  if (way_m == 0) return gradient;
+  const double step_m = kSlopeStep * c.domain_m.size().maxCoeff();
+  const Mat3 inner = at(near - step_m / way_m * beyond).gradient;
+  Mat3 out = gradient;
+  for (int axis = 0; axis < 3; ++axis)
+    if (beyond[axis] == 0) out.col(axis) += way_m / step_m * (gradient.col(axis) - inner.col(axis));
+  return out;
+}
+
 BodyMap::Tangent BodyMap::at(const Vec3& X) const {
   return tangentOf(R_, X, false);
 }
@@ -115,17 +140,15 @@ Vec3 BodyMap::velocity(const Vec3& X) const {
   return tangentOf(rate_, X, true).x_m;
 }
 
-// The largest difference of the given order between samples in a row along an axis, m.
-double BodyMap::spread(std::size_t axis, std::size_t order) const {
+// The largest second difference of lattice samples in a row along an axis, m.
+double BodyMap::largestBend_m(std::size_t axis) const {
   const auto n = static_cast<std::size_t>(constant_->sampleCount);
   const std::size_t stride = axis == 0 ? 1 : axis == 1 ? n : n * n;
   double largest_m = 0;
-  for (std::size_t i = 0; i < deformed_m_.size(); ++i) {
-    if (i / stride % n + order >= n) continue;
-    const Vec3 &a = deformed_m_[i], &b = deformed_m_[i + stride];
-    const Vec3 difference =
-        order == 1 ? Vec3(b - a) : Vec3(a - 2 * b + deformed_m_[i + 2 * stride]);
-    largest_m = std::max(largest_m, difference.norm());
+  for (std::size_t i = 0; i < constant_->latticeCount; ++i) {
+    if (i / stride % n + 2 >= n) continue;
+    const Vec3* at = deformed_m_.data() + i;
+    largest_m = std::max(largest_m, (at[0] - 2 * at[stride] + at[2 * stride]).norm());
   }
   return largest_m;
 }
@@ -135,16 +158,12 @@ double BodyMap::spread(std::size_t axis, std::size_t order) const {
 void BodyMap::measure() {
   bounds_ = {};
   for (const Vec3& x : deformed_m_) bounds_.add(x);
-  double curved_m = 0, edges_m2 = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!constant_->affine) curved_m += spread(axis, 2) / 8;
-    const double edge_m = spread(axis, 1);
-    edges_m2 += edge_m * edge_m;
-  }
+  double curved_m = 0;
+  for (std::size_t axis = 0; axis < 3 && !constant_->affine; ++axis)
+    curved_m += largestBend_m(axis) / 8;
   if (constant_->shape->basis().degree() > 2) curved_m *= 2;
   const Vec3 pad = Vec3::Constant(curved_m);
   bounds_ = {bounds_.low - pad, bounds_.high + pad};
-  covered_m_ = 0.5 * std::sqrt(edges_m2) + curved_m;
 }
 
 // Between a parabola's ends, n − 1 samples apart, the middle is off by (n − 1)²/8 second
@@ -167,24 +186,31 @@ std::array<Vec3, 3> BodyMap::bulges() const {
   return out;
 }
 
-std::size_t BodyMap::nearestSample(const Vec3& x) const {
-  std::size_t best = 0;
+std::size_t BodyMap::nearestSample(const Vec3& x, std::size_t first) const {
+  std::size_t best = first;
   double best_m2 = 1e300;
-  for (std::size_t i = 0; i < deformed_m_.size(); ++i) {
+  for (std::size_t i = first; i < deformed_m_.size(); ++i) {
     const double square_m2 = (deformed_m_[i] - x).squaredNorm();
     if (square_m2 < best_m2) best_m2 = square_m2, best = i;
   }
   return best;
 }
 
-BodyMap::Clearance BodyMap::clearance(const Vec3& x) const {
-  const Vec3 inBox = x.cwiseMax(bounds_.low).cwiseMin(bounds_.high);
-  const Vec3& sample = deformed_m_[nearestSample(x)];
-  const double fromBox_m = (x - inBox).norm(), fromSample_m = (x - sample).norm() - covered_m_;
-  const Vec3 away = fromBox_m > fromSample_m && fromBox_m > 0 ? Vec3(x - inBox) : Vec3(x - sample);
+BodyMap::Clearance BodyMap::boxClearance(const Vec3& x) const {
+  const Vec3 away = x - x.cwiseMax(bounds_.low).cwiseMin(bounds_.high);
   const double length_m = away.norm();
-  return {std::max({fromBox_m, fromSample_m, 0.0}),
-          length_m > 0 ? Vec3(away / length_m) : Vec3(Vec3::UnitY())};
+  return {length_m, length_m > 0 ? Vec3(away / length_m) : Vec3(Vec3::UnitY())};
+}
+
+BodyMap::Clearance BodyMap::planeClearance(const Vec3& x) const {
+  const std::size_t first = constant_->latticeCount;
+  if (first == deformed_m_.size()) return boxClearance(x);
+  const std::size_t nearest = nearestSample(x, first);
+  const Mat3 F = at(constant_->samples_m[nearest]).gradient;
+  const Vec3 image = cofactors(F) * constant_->normals[nearest - first];
+  const double length = image.norm();
+  const Vec3 n = length > 0 ? Vec3(image / length) : Vec3(Vec3::UnitY());
+  return {n.dot(x - deformed_m_[nearest]), n};
 }
 
 BodyMap::Inverse BodyMap::inverse(const Vec3& x) const {
@@ -200,9 +226,7 @@ BodyMap::Inverse BodyMap::inverse(const Vec3& x) const {
     if (found.found) return found;
   }
   // Much bent, the body's own points tell best where to look.
-  const std::size_t nearest = nearestSample(x);
-  Vec3 start = constant_->samples_m[nearest];
-  if (constant_->dimension == 2) start.z() = x.z();
+  Vec3 start = constant_->samples_m[nearestSample(x, 0)];
   if (off_m < (point(start) - x).norm()) start = straight;
   return newton(x, start);
 }
@@ -214,8 +238,9 @@ BodyMap::Inverse BodyMap::newton(const Vec3& x, const Vec3& start) const {
   Tangent tangent = at(start);
   double off_m = (x - tangent.x_m).norm();
   for (int i = 0; i < kMaxIterations && off_m > kTolerance * size_m; ++i) {
-    if (!(tangent.gradient.determinant() > kLeastDeterminant)) break;
-    const Vec3 full = tangent.gradient.inverse() * (x - tangent.x_m);
+    const Mat3 F = slope(here.X_m, tangent.gradient);
+    if (!(F.determinant() > kLeastDeterminant)) break;
+    const Vec3 full = F.inverse() * (x - tangent.x_m);
     double share = std::min(1.0, 0.5 * size_m / full.norm());
     bool nearer = false;
     for (int halving = 0; halving < kMaxHalvings && !nearer; ++halving, share *= 0.5) {

@@ -14,9 +14,9 @@ namespace fascia {
 // tangent at the nearest point of that box. In two dimensions z stays as it is.
 class BodyMap {
  public:
-  // `domain` is a box around the undeformed matter. Throws Error if the basis is larger than
-  // kMaxShapes.
-  BodyMap(BodyShapePtr shape, const Box& domain_m);
+  // `domain` is a box around the undeformed matter, `surface` has points on its surface and their
+  // normals. Throws Error if the basis is larger than kMaxShapes.
+  BodyMap(BodyShapePtr shape, const Box& domain_m, const TriangleMesh& surface = {});
   static constexpr int kMaxShapes = 512;
 
   // The body's own coordinates and their rates. Allocates nothing.
@@ -50,12 +50,16 @@ class BodyMap {
   std::array<Vec3, 3> bulges() const;
   // A box around the deformed domain.
   const Box& bounds() const { return bounds_; }
-  // No point of the deformed matter is nearer than this, m; the direction away from it.
+  // What can be said of the distance to the surface without an inverse; the direction away from it.
   struct Clearance {
     double distance_m;
     Vec3 away;
   };
-  Clearance clearance(const Vec3& x) const;
+  // From the plane that touches the deformed surface in the nearest of the given points; off by
+  // about their spacing squared over the radius of curvature.
+  Clearance planeClearance(const Vec3& x) const;
+  // From bounds(), for points outside of it: no point of the matter is nearer.
+  Clearance boxClearance(const Vec3& x) const;
 
  private:
   // What no state changes; shared by all copies.
@@ -65,14 +69,18 @@ class BodyMap {
     bool affine;
     Box domain_m, reach_m;
     Vec3 center_m;
-    int sampleCount;               // along each axis
-    std::vector<Vec3> samples_m;   // a lattice over the domain, x fastest
+    int sampleCount;  // along each axis
+    // A lattice over the domain, x fastest; from latticeCount on, the points of the surface.
+    std::vector<Vec3> samples_m;
+    std::size_t latticeCount;
+    std::vector<Vec3> normals;     // of the surface's points
     Eigen::MatrixXd sampleValues;  // p at each, shapeCount × samples
   };
   Tangent tangentOf(const Eigen::MatrixXd& R, const Vec3& X, bool isRate) const;
   void measure();
-  double spread(std::size_t axis, std::size_t order) const;
-  std::size_t nearestSample(const Vec3& x) const;
+  double largestBend_m(std::size_t axis) const;
+  Mat3 slope(const Vec3& X, const Mat3& gradient) const;
+  std::size_t nearestSample(const Vec3& x, std::size_t first) const;
   Inverse newton(const Vec3& x, const Vec3& start) const;
 
   std::shared_ptr<const Constant> constant_;
@@ -81,7 +89,6 @@ class BodyMap {
   Vec3 centerVelocity_m_per_s_ = Vec3::Zero();
   Mat3 centerRate_per_s_ = Mat3::Zero();
   std::vector<Vec3> deformed_m_;  // the samples
-  double covered_m_ = 0;          // every point of the deformed domain has a sample this near
   Box bounds_;
 };
 

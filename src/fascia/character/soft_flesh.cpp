@@ -42,6 +42,19 @@ void validateHeld(const SoftSolidDef& def, const Box& bounds, const std::string&
   }
 }
 
+bool isSound(const FleshSolidDef& def, const Solid& solid, const std::string& pointer,
+             Diagnostics& diagnostics) {
+  const std::size_t errorsBefore = diagnostics.errors().size();
+  validate(def.soft->basis, pointer + "/soft/basis", diagnostics);
+  validate(static_cast<const BodyMaterialDef&>(*def.soft), pointer + "/soft", diagnostics);
+  validateHeld(*def.soft, solid.bounds(), pointer + "/soft/held_m", diagnostics);
+  if (!def.drivers.empty())
+    diagnostics.error(pointer + "/drivers",
+                      "a soft solid takes its shape from forces: it cannot be driven",
+                      "drop \"soft\", or the drivers");
+  return diagnostics.errors().size() == errorsBefore;
+}
+
 }  // namespace
 
 SoftFlesh::SoftFlesh(const FleshDef& def, const Flesh& flesh, const std::string& pointer,
@@ -49,41 +62,32 @@ SoftFlesh::SoftFlesh(const FleshDef& def, const Flesh& flesh, const std::string&
   std::vector<BodySurfacePtr> surfaces;
   softOf_.resize(flesh.solidCount());
   for (std::size_t i = 0; i < def.solids.size(); ++i) {
-    const FleshSolidDef& solidDef = def.solids[i];
-    if (!solidDef.soft) continue;
-    const SoftSolidDef& soft = *solidDef.soft;
     const SolidId id(static_cast<std::int64_t>(i));
-    const Solid& solid = flesh.restSolid(id);
     const std::string at = pointer + "/" + std::to_string(i);
-    const std::size_t errorsBefore = diagnostics.errors().size();
-    validate(soft.basis, at + "/soft/basis", diagnostics);
-    validate(static_cast<const BodyMaterialDef&>(soft), at + "/soft", diagnostics);
-    validateHeld(soft, solid.bounds(), at + "/soft/held_m", diagnostics);
-    if (!solidDef.drivers.empty())
-      diagnostics.error(at + "/drivers",
-                        "a soft solid takes its shape from forces: it cannot be "
-                        "driven",
-                        "drop \"soft\", or the drivers");
-    if (diagnostics.errors().size() > errorsBefore) continue;
-    const BasisPtr basis = makeBasis(soft.basis, 3, solid.bounds());
-    const Transform& inJoint = flesh.placeInJoint(id);
+    if (!def.solids[i].soft || !isSound(def.solids[i], flesh.restSolid(id), at, diagnostics))
+      continue;
     try {
-      const BodyId body = model_.add(
-          std::make_shared<BodyShape>(BodyDef{basis, matterOf(solid, soft, *basis), soft}));
-      const Vec3 joint_solid = inJoint.inverse().translation_m;
-      parts_.push_back({id, body, flesh.joint(id), inJoint,
-                        soft.held_m.empty()
-                            ? usualHeldPoints(solid, joint_solid, basis->degree() > 1)
-                            : soft.held_m});
+      addPart(*def.solids[i].soft, flesh, id);
+      softOf_[i] = SolidId(static_cast<std::int64_t>(surfaces.size()));
+      surfaces.push_back(makeSolidSurface(flesh.restSolid(id), kSurfaceDetail));
     } catch (const Error& e) {
       for (const Issue& issue : e.issues())
         diagnostics.error(at + "/soft", issue.message, issue.hint);
-      continue;
     }
-    softOf_[i] = SolidId(static_cast<std::int64_t>(surfaces.size()));
-    surfaces.push_back(makeSolidSurface(solid, kSurfaceDetail));
   }
-  field_ = BodyField(model_, surfaces);
+  if (diagnostics.ok()) field_ = BodyField(model_, surfaces);
+}
+
+void SoftFlesh::addPart(const SoftSolidDef& soft, const Flesh& flesh, SolidId id) {
+  const Solid& solid = flesh.restSolid(id);
+  const BasisPtr basis = makeBasis(soft.basis, 3, solid.bounds());
+  const BodyId body =
+      model_.add(std::make_shared<BodyShape>(BodyDef{basis, matterOf(solid, soft, *basis), soft}));
+  const Transform& inJoint = flesh.placeInJoint(id);
+  const Vec3 joint_solid = inJoint.inverse().translation_m;
+  parts_.push_back({id, body, flesh.joint(id), inJoint,
+                    soft.held_m.empty() ? usualHeldPoints(solid, joint_solid, basis->degree() > 1)
+                                        : soft.held_m});
 }
 
 void SoftFlesh::prepare(LayeredFlesh& flesh) const {

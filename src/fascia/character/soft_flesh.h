@@ -49,6 +49,8 @@ class SoftFlesh {
   void setShapes(std::span<const double> shapes, double time_s, OdeState& bodies) const;
 
  private:
+  void addPart(const SoftSolidDef& soft, const Flesh& flesh, SolidId id);
+
   std::vector<Part> parts_;
   BodyModel model_;
   BodyField field_;  // at rest

@@ -1,7 +1,9 @@
 #include <fascia/world/stage.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include <fascia/base/random.h>
 #include <fascia/base/suggest.h>
@@ -41,42 +43,46 @@ Vec3 randomIn(const Vec3& reach, Random& random) {
   return out;
 }
 
-// What one body is made of, ready for BodyShape and for pictures.
-struct Made {
+// What a body is made of, as far as it has to be made anew for another kind of body.
+struct Form {
   BodySurfacePtr surface;
   BasisPtr basis;
-  Matter matter;
+  std::function<Matter(MatterDetail)> matter;  // costs most: not before all else is checked
 };
 
-Made makeSolidBody(const SceneBodyDef& def, const std::string& pointer, Diagnostics& diagnostics) {
+Form solidForm(const SceneBodyDef& def, const std::string& pointer, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.errors().size();
   const Solid solid(def.solid, pointer, diagnostics);
-  if (!diagnostics.ok()) return {};
-  Made made;
-  made.surface = makeSolidSurface(solid, kSurfaceDetail);
-  made.basis = makeBasis(def.basis, 3, solid.bounds());
-  made.matter = solidMatter(solid, def.density_kg_per_m3, cellSize(solid.bounds().size()),
-                            MatterDetail::of(made.basis->degree()));
-  return made;
+  if (diagnostics.errors().size() > before) return {};
+  const Box box = solid.bounds();
+  return {makeSolidSurface(solid, kSurfaceDetail), makeBasis(def.basis, 3, box),
+          [&def, solid, box](MatterDetail detail) {
+            return solidMatter(solid, def.density_kg_per_m3, cellSize(box.size()), detail);
+          }};
 }
 
-Made makeOutlineBody(const SceneBodyDef& def) {
-  const std::vector<Vec2> outline = def.smooth_outline ? closedCurve(def.outline_m) : def.outline_m;
-  Made made;
-  made.surface = makeOutlineSurface(outline, def.thickness_m);
-  made.basis = makeBasis(def.basis, 2, made.surface->bounds_m());
-  made.matter = outlineMatter(outline, def.density_kg_per_m3 * def.thickness_m,
-                              MatterDetail::of(made.basis->degree()));
-  return made;
+Form outlineForm(const SceneBodyDef& def) {
+  const std::vector<Vec2> outline =
+      def.smooth_outline ? closedCurve(def.outline_m) : def.outline_m;
+  const BodySurfacePtr surface = makeOutlineSurface(outline, def.thickness_m);
+  return {surface, makeBasis(def.basis, 2, surface->bounds_m()),
+          [&def, outline](MatterDetail detail) {
+            return outlineMatter(outline, def.density_kg_per_m3 * def.thickness_m, detail);
+          }};
 }
 
-Made makeMeshBody(const SceneBodyDef& def) {
-  Made made;
-  made.surface = makeMeshSurface(*def.mesh);
-  const Box box = made.surface->bounds_m();
-  made.basis = makeBasis(def.basis, 3, box);
-  made.matter = meshMatter(*def.mesh, def.density_kg_per_m3, cellSize(box.size()),
-                           MatterDetail::of(made.basis->degree()));
-  return made;
+Form meshForm(const SceneBodyDef& def) {
+  const BodySurfacePtr surface = makeMeshSurface(*def.mesh);
+  const Box box = surface->bounds_m();
+  return {surface, makeBasis(def.basis, 3, box), [&def, box](MatterDetail detail) {
+            return meshMatter(*def.mesh, def.density_kg_per_m3, cellSize(box.size()), detail);
+          }};
+}
+
+Form formOf(const SceneBodyDef& def, const std::string& pointer, Diagnostics& diagnostics) {
+  if (def.form == SceneBodyDef::Form::outline) return outlineForm(def);
+  if (def.form == SceneBodyDef::Form::mesh) return meshForm(def);
+  return solidForm(def, pointer, diagnostics);
 }
 
 // A solid's surface in the space it is placed in.
@@ -99,6 +105,33 @@ TriangleMesh lookOf(const SceneBodyDef& def, const BodySurface& surface) {
   if (def.inflated) inflate(surface, mesh);
   raise(def.position_m.z(), mesh);
   return mesh;
+}
+
+bool sameSolid(const SolidDef& a, const SolidDef& b) {
+  const auto sameStep = [](const SolidDef::Step& x, const SolidDef::Step& y) {
+    return x.type == y.type && x.parameters == y.parameters;
+  };
+  return a.shape == b.shape && a.parameters == b.parameters &&
+         std::ranges::equal(a.deformations, b.deformations, sameStep);
+}
+
+// Whether one shape, surface and look does for both.
+bool sameKind(const SceneBodyDef& a, const SceneBodyDef& b) {
+  const auto numbersOf = [](const SceneBodyDef& d) {
+    return std::array{d.density_kg_per_m3, d.rigidity_Pa, d.volume_Pa, d.relaxation_s,
+                      d.power_damping_s_per_J, d.drag_per_s, d.thickness_m, d.form == SceneBodyDef::Form::outline ? d.position_m.z() : 0};
+  };
+  if (a.form != b.form || !(a.basis == b.basis) || numbersOf(a) != numbersOf(b)) return false;
+  switch (a.form) {
+    case SceneBodyDef::Form::outline:
+      return a.outline_m == b.outline_m && a.smooth_outline == b.smooth_outline &&
+             a.inflated == b.inflated;
+    case SceneBodyDef::Form::mesh:
+      return a.mesh_file == b.mesh_file;
+    case SceneBodyDef::Form::solid:
+      break;
+  }
+  return sameSolid(a.solid, b.solid);
 }
 
 void repeatedNames(const auto& list, const std::string& pointer, Diagnostics& diagnostics) {
@@ -144,33 +177,13 @@ void Stage::addBody(std::size_t index, Diagnostics& diagnostics) {
                       flat ? "set \"dimension\": 2" : "give it an \"outline_m\"");
     return;
   }
-  Diagnostics own;
   try {
-    Made made = flat                                    ? makeOutlineBody(body)
-                : body.form == SceneBodyDef::Form::mesh ? makeMeshBody(body)
-                                                        : makeSolidBody(body, pointer, own);
-    if (!own.ok()) {
-      for (const Issue& issue : own.errors())
-        diagnostics.error(issue.where.pointer, issue.message, issue.hint);
-      return;
-    }
-    model_.add(
-        std::make_shared<const BodyShape>(BodyDef{made.basis, std::move(made.matter), body}));
-    looks_.push_back(lookOf(body, *made.surface));
-    surfaces_.push_back(std::move(made.surface));
+    addKind(body, pointer, diagnostics);
   } catch (const Error& error) {
     for (const Issue& issue : error.issues())
       diagnostics.error(pointer + issue.where.pointer, issue.message, issue.hint);
     return;
   }
-  std::size_t numbers = 0;
-  for (std::size_t b = 0; b < model_.bodyCount(); ++b) {
-    const auto n = static_cast<std::size_t>(model_.shape(BodyId(b)).coordinateCount());
-    numbers += n * n;
-  }
-  if (numbers > kMostMatrixNumbers)
-    diagnostics.error(pointer, "the bodies up to this one have too many coordinates to simulate",
-                      "use fewer bodies or bases with fewer functions");
   std::vector<TriangleMesh> meshes;
   for (std::size_t i = 0; i < body.ornaments.size(); ++i) {
     const Solid solid(body.ornaments[i].solid, at(pointer + "/ornaments", i), diagnostics);
@@ -179,6 +192,40 @@ void Stage::addBody(std::size_t index, Diagnostics& diagnostics) {
     if (flat) raise(body.position_m.z(), meshes.back());
   }
   ornaments_.push_back(std::move(meshes));
+}
+
+// The shape, surface and look of a body: those of an earlier one where the two differ in nothing
+// that matters to them.
+void Stage::addKind(const SceneBodyDef& body, const std::string& pointer,
+                    Diagnostics& diagnostics) {
+  std::size_t kind = 0;
+  while (kind < shapes_.size() && !sameKind(def_.bodies[kind], body)) ++kind;
+  if (kind < shapes_.size()) {
+    countNumbers(shapes_[kind]->coordinateCount());
+    shapes_.push_back(shapes_[kind]);
+    surfaces_.push_back(surfaces_[kind]);
+    looks_.push_back(looks_[kind]);
+  } else {
+    Form form = formOf(body, pointer, diagnostics);
+    if (!form.basis) return;
+    countNumbers(form.basis->size() * form.basis->dimension());
+    const MatterDetail detail = MatterDetail::of(form.basis->degree());
+    shapes_.push_back(
+        std::make_shared<const BodyShape>(BodyDef{form.basis, form.matter(detail), body}));
+    looks_.push_back(lookOf(body, *form.surface));
+    surfaces_.push_back(std::move(form.surface));
+  }
+  model_.add(shapes_.back());
+}
+
+void Stage::countNumbers(int coordinates) {
+  const auto n = static_cast<std::size_t>(coordinates);
+  matrixNumbers_ += n * n;
+  if (matrixNumbers_ <= kMostMatrixNumbers) return;
+  Issue issue{{},
+              "the bodies up to this one have too many coordinates to simulate",
+              "use fewer bodies, or bases with fewer functions"};
+  throw Error(issue);
 }
 
 // A thing that stands is flesh on a joint that never moves: what collides with characters collides

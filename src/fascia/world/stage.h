@@ -54,6 +54,8 @@ class Stage {
 
  private:
   void addBody(std::size_t index, Diagnostics& diagnostics);
+  void addKind(const SceneBodyDef& body, const std::string& pointer, Diagnostics& diagnostics);
+  void countNumbers(int coordinates);
   void addNames(Diagnostics& diagnostics);
   void addProps(Diagnostics& diagnostics);
   void checkConstraints(Diagnostics& diagnostics) const;
@@ -65,6 +67,8 @@ class Stage {
 
   SceneDef def_;
   BodyModel model_;
+  std::vector<BodyShapePtr> shapes_;                  // per body
+  std::size_t matrixNumbers_ = 0;                     // of all bodies' matrices
   std::vector<BodySurfacePtr> surfaces_;              // per body
   std::vector<TriangleMesh> looks_;                   // per body
   std::vector<std::vector<TriangleMesh>> ornaments_;  // per body

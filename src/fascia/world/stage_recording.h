@@ -33,7 +33,7 @@ struct StageRecordOptions {
   double duration_s = 0;     // 0 = as in the file
   double start_s = 0;        // frames before this are simulated, but not kept
   // Called after every frame with the fraction done; false stops (recording is then discarded).
-  std::function<bool(double)> progress;
+  std::function<bool(double)> progress = {};
 };
 
 // Throws Error: of the script, or "stopped" when progress asked to stop.
