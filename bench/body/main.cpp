@@ -14,6 +14,7 @@ int main() {
       fascia::printRealTime();
       fascia::printAccuracy();
       fascia::printStability();
+      fascia::printPiles();
     }
     fascia::printThreads();
   } catch (const std::exception& e) {

@@ -21,7 +21,7 @@ struct ContactSettings {
   double margin_m = 0;  // [0, 1e3]
   // What sticks creeps, by less than this part of a body's size per second.
   double creep_per_s = 1e-3;  // (0, 1]
-  int points_per_body = 100;  // [1, 1000]; what is smaller than their distance slips between
+  int points_per_body = 200;  // [1, 1000]; what is smaller than their distance slips between
   bool bodies_collide = true;
 };
 

@@ -28,7 +28,8 @@ std::vector<std::size_t> extremePoints(const std::vector<Vec3>& vertices) {
   if (vertices.empty()) return extremes;
   for (const int nonzero : {3, 2, 1}) {
     for (int code = 0; code < 27; ++code) {
-      const Vec3 direction(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
+      const int x = code % 3 - 1, y = code / 3 % 3 - 1, z = code / 9 - 1;
+      const Vec3 direction(x, y, z);
       if ((direction.array() != 0).count() != nonzero) continue;
       const auto along = [&](const Vec3& p) { return direction.dot(p); };
       extremes.push_back(static_cast<std::size_t>(std::ranges::max_element(vertices, {}, along) -

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include <fascia/base/random.h>
 #include <fascia/base/suggest.h>
@@ -62,8 +63,7 @@ Form solidForm(const SceneBodyDef& def, const std::string& pointer, Diagnostics&
 }
 
 Form outlineForm(const SceneBodyDef& def) {
-  const std::vector<Vec2> outline =
-      def.smooth_outline ? closedCurve(def.outline_m) : def.outline_m;
+  const std::vector<Vec2> outline = def.smooth_outline ? closedCurve(def.outline_m) : def.outline_m;
   const BodySurfacePtr surface = makeOutlineSurface(outline, def.thickness_m);
   return {surface, makeBasis(def.basis, 2, surface->bounds_m()),
           [&def, outline](MatterDetail detail) {
@@ -118,8 +118,14 @@ bool sameSolid(const SolidDef& a, const SolidDef& b) {
 // Whether one shape, surface and look does for both.
 bool sameKind(const SceneBodyDef& a, const SceneBodyDef& b) {
   const auto numbersOf = [](const SceneBodyDef& d) {
-    return std::array{d.density_kg_per_m3, d.rigidity_Pa, d.volume_Pa, d.relaxation_s,
-                      d.power_damping_s_per_J, d.drag_per_s, d.thickness_m, d.form == SceneBodyDef::Form::outline ? d.position_m.z() : 0};
+    return std::array{d.density_kg_per_m3,
+                      d.rigidity_Pa,
+                      d.volume_Pa,
+                      d.relaxation_s,
+                      d.power_damping_s_per_J,
+                      d.drag_per_s,
+                      d.thickness_m,
+                      d.form == SceneBodyDef::Form::outline ? d.position_m.z() : 0};
   };
   if (a.form != b.form || !(a.basis == b.basis) || numbersOf(a) != numbersOf(b)) return false;
   switch (a.form) {
@@ -135,14 +141,12 @@ bool sameKind(const SceneBodyDef& a, const SceneBodyDef& b) {
 }
 
 void repeatedNames(const auto& list, const std::string& pointer, Diagnostics& diagnostics) {
+  std::set<std::string_view> names;
   for (std::size_t i = 0; i < list.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      if (list[i].name != list[j].name) continue;
+    if (!names.insert(list[i].name).second)
       diagnostics.error(at(pointer, i) + "/name",
                         "found " + fascia::quoted(list[i].name) + " a second time",
                         "give each a name of its own");
-      break;
-    }
 }
 
 }  // namespace
@@ -198,14 +202,15 @@ void Stage::addBody(std::size_t index, Diagnostics& diagnostics) {
 // that matters to them.
 void Stage::addKind(const SceneBodyDef& body, const std::string& pointer,
                     Diagnostics& diagnostics) {
-  std::size_t kind = 0;
-  while (kind < shapes_.size() && !sameKind(def_.bodies[kind], body)) ++kind;
-  if (kind < shapes_.size()) {
-    countNumbers(shapes_[kind]->coordinateCount());
-    shapes_.push_back(shapes_[kind]);
-    surfaces_.push_back(surfaces_[kind]);
-    looks_.push_back(looks_[kind]);
+  const auto known = std::ranges::find_if(
+      kinds_, [&](std::size_t kind) { return sameKind(def_.bodies[kind], body); });
+  if (known != kinds_.end()) {
+    countNumbers(shapes_[*known]->coordinateCount());
+    shapes_.push_back(shapes_[*known]);
+    surfaces_.push_back(surfaces_[*known]);
+    looks_.push_back(looks_[*known]);
   } else {
+    kinds_.push_back(shapes_.size());
     Form form = formOf(body, pointer, diagnostics);
     if (!form.basis) return;
     countNumbers(form.basis->size() * form.basis->dimension());

@@ -67,6 +67,7 @@ class Stage {
 
   SceneDef def_;
   BodyModel model_;
+  std::vector<std::size_t> kinds_;                    // bodies that differ in more than their place
   std::vector<BodyShapePtr> shapes_;                  // per body
   std::size_t matrixNumbers_ = 0;                     // of all bodies' matrices
   std::vector<BodySurfacePtr> surfaces_;              // per body
