@@ -41,7 +41,7 @@ Examples:
   fascia bake examples/penguin.fascia.json -o penguin.glb
   fascia bake fox.fascia.json --motion Gallop -o fox_alive.glb --as bones --helpers 30
   fascia bake human.fascia.json --motion walk.bvh -o walk.glb
-  fascia bake examples/scenes/sky-hook.fascia.json --seed 7 -o sky-hook.glb -o sky-hook.fcache
+  fascia bake examples/sky-hook.fascia.json --seed 7 -o sky-hook.glb -o sky-hook.fcache
   fascia bake examples/penguin.fascia.json --motion hop -o hop.glb -o hop.fcache --stats hop.json
   fascia bake examples/penguin.fascia.json --grid 128x64 --fps 30 -o fine.pc2)";
 

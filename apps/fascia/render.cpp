@@ -28,7 +28,7 @@ eye=1,2,3;target=0,1,0 (metres). The character faces +z, y is up.
 Examples:
   fascia render examples/penguin.fascia.json --time 1.5 -o penguin.png
   fascia render examples/penguin.fascia.json --layers skeleton,muscle,skin -o layers.png
-  fascia render examples/scenes/sky-hook.fascia.json --seed 7 -o sky-hook.mp4
+  fascia render examples/sky-hook.fascia.json --seed 7 -o sky-hook.mp4
   fascia render penguin.fcache --camera az=60,el=10 --size 1280x720 --fps 60 -o penguin.mp4)";
 
 struct RenderOptions {

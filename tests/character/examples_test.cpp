@@ -5,6 +5,7 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/io/character_file.h>
+#include <fascia/io/scene_file.h>
 #include <fascia/math/ode/integrators.h>
 
 #include "small_character.h"
@@ -15,7 +16,9 @@ namespace {
 std::vector<std::string> exampleFiles() {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(FASCIA_SOURCE_DIR "/examples"))
-    if (entry.path().string().ends_with(".fascia.json")) files.push_back(entry.path().string());
+    if (const std::string path = entry.path().string();
+        path.ends_with(".fascia.json") && !isSceneFile(path))
+      files.push_back(path);
   std::sort(files.begin(), files.end());
   return files;
 }

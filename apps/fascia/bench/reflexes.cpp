@@ -104,7 +104,7 @@ void runReflexes(const ReflexOptions& options, const Console& console) {
   std::vector<std::string> scenes = options.scenes;
   if (scenes.empty())
     for (const char* name : {"sky-hook", "hinge-horned-monster"})
-      scenes.push_back(findExamples() + "/scenes/" + name + ".fascia.json");
+      scenes.push_back(findExamples() + "/" + name + ".fascia.json");
   console.say(machineLine());
   Json::List results;
   for (const std::string& scene : scenes) results.push_back(measure(scene, options.runs, console));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/field/field_list.h>
 #include <fascia/flesh/bind.h>
 #include <fascia/math/ode/integrators.h>
 
@@ -67,8 +68,13 @@ void showBodies(const OdeState& bodies, bool moving, CharacterState& state) {
 // are taken from the interval that was stepped last, or as the state has them.
 class MotionPoses final : public SkinPoseSource {
  public:
-  MotionPoses(const Character& character, int motion, bool moving, CharacterState& state)
-      : character_(character), motion_(motion), moving_(moving), state_(state) {}
+  MotionPoses(const Character& character, int motion, bool moving, CharacterState& state,
+              Surroundings* surroundings = nullptr)
+      : character_(character),
+        motion_(motion),
+        moving_(moving),
+        state_(state),
+        surroundings_(surroundings) {}
 
   // The soft solids' steps to end_s, which at() then shows; how many were put back.
   std::size_t stepBodies(double end_s) {
@@ -88,7 +94,11 @@ class MotionPoses final : public SkinPoseSource {
     character_.flesh().pose(state_.posture, state_.skeleton, state_.parameters,
                             state_.flesh.rigid());
     if (character_.softFlesh()) showSoft(time_s);
-    return {&state_.flesh, state_.skeleton.joint_world};
+    if (!surroundings_) return {&state_.flesh, state_.skeleton.joint_world};
+    all_.clear();
+    all_.add(state_.flesh);
+    all_.add(surroundings_->at(time_s));
+    return {&all_, state_.skeleton.joint_world};
   }
 
  private:
@@ -127,6 +137,8 @@ class MotionPoses final : public SkinPoseSource {
   int motion_;
   bool moving_;
   CharacterState& state_;
+  Surroundings* surroundings_;
+  FieldList all_;                   // of both
   SoftStepper* stepper_ = nullptr;  // once it has stepped
 };
 
@@ -279,10 +291,10 @@ CharacterState initialState(const Character& character, int motion) {
 }
 
 void advance(const Character& character, int motion, double dt_s, CharacterState& state,
-             SkinStats& stats) {
+             SkinStats& stats, Surroundings* surroundings) {
   const double start = state.time_s;
   state.time_s = start + dt_s;
-  MotionPoses poses(character, motion, true, state);
+  MotionPoses poses(character, motion, true, state, surroundings);
   const int pieces = std::max(1, static_cast<int>(std::ceil(dt_s / kLongestFrame_s - 1e-6)));
   for (int i = 0; i < pieces; ++i) {
     const double from = start + dt_s * i / pieces;

@@ -76,9 +76,18 @@ CharacterState initialState(const Character& character, int motion);
 // state.bodies has them if those are of this very time; otherwise undeformed, where joints are.
 void poseLayers(const Character& character, int motion, bool moving, CharacterState& state);
 
+// What stands or moves about a character, in its own space, while it is advanced: its skin must not
+// enter it. Skins whose points feel solids of their own only, those on rigs, do not feel it.
+class Surroundings {
+ public:
+  virtual ~Surroundings() = default;
+  // Posed at any time of the frame; valid until the next call.
+  virtual const Field& at(double time_s) = 0;
+};
+
 // One frame: motion → skeleton → flesh → soft solids → skin. dt_s > 0; long frames are divided.
 // Never throws, allocates nothing after the first calls.
 void advance(const Character& character, int motion, double dt_s, CharacterState& state,
-             SkinStats& stats);
+             SkinStats& stats, Surroundings* surroundings = nullptr);
 
 }  // namespace fascia

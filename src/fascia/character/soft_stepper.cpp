@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include <fascia/math/ode/between.h>
+
 namespace fascia {
 namespace {
 
@@ -137,18 +139,7 @@ void SoftStepper::keep(const OdeState& bodies) {
 const OdeState& SoftStepper::at(double time_s) {
   std::size_t i = 0;
   while (i + 2 < keptCount_ && kept_[i + 1].t_s <= time_s) ++i;
-  const OdeState &a = kept_[i], &b = kept_[std::min(i + 1, keptCount_ - 1)];
-  const double h = b.t_s - a.t_s;
-  if (!(h > 0) || time_s >= b.t_s) return b;
-  const double u = std::max(0.0, (time_s - a.t_s) / h);
-  between_.resize(a.r.size());
-  between_.t_s = time_s;
-  for (std::size_t k = 0; k < a.r.size(); ++k) {
-    const double v0 = h * a.v[k], v1 = h * b.v[k], way = b.r[k] - a.r[k];
-    const double c = 3 * way - 2 * v0 - v1, d = v0 + v1 - 2 * way;
-    between_.r[k] = a.r[k] + u * (v0 + u * (c + u * d));
-    between_.v[k] = (v0 + u * (2 * c + 3 * u * d)) / h;
-  }
+  between(kept_[i], kept_[std::min(i + 1, keptCount_ - 1)], time_s, between_);
   return between_;
 }
 

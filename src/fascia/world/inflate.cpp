@@ -26,7 +26,8 @@ float greatestDepth(const BodySurface& plate, const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3f> samples = mesh.positions;
   for (const auto& [a, b, c] : mesh.triangles)
     samples.emplace_back((mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3);
-  return std::max(*std::ranges::max_element(depths(plate, samples)), 1e-9f);
+  const FloatArray depth = depths(plate, samples);
+  return std::max(*std::ranges::max_element(depth), 1e-9f);
 }
 
 }  // namespace

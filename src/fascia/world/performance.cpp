@@ -7,6 +7,7 @@
 #include <fascia/body/body_stepper.h>
 #include <fascia/world/joint_place.h>
 #include <fascia/world/placed_field.h>
+#include <fascia/world/stage_surroundings.h>
 
 namespace fascia {
 namespace {
@@ -41,6 +42,7 @@ struct Performance::Actor {
   CharacterState state;
   CharacterState ahead;  // its flesh as bodies meet it, step by step
   std::unique_ptr<PlacedField> field;
+  std::unique_ptr<StageSurroundings> surroundings;  // as its skin meets bodies and props
   SkinStats stats;
 };
 
@@ -70,6 +72,7 @@ void Performance::addActor(const SceneCharacterDef& def) {
   actor->state = initialState(character, motion);
   actor->ahead = actor->state;
   actor->field = std::make_unique<PlacedField>(actor->ahead.flesh, placeOf(def));
+  actor->surroundings = std::make_unique<StageSurroundings>(stage_, placeOf(def));
   actors_.push_back(std::move(actor));
 }
 
@@ -129,13 +132,17 @@ void Performance::addPaths() {
 void Performance::advance(double dt_s) {
   const std::size_t steps = stage_.stepsPerFrame(1 / dt_s);
   const double start_s = state_.t_s;
+  if (!actors_.empty()) before_ = state_;
   for (std::size_t i = 0; i < steps; ++i) {
     const double end_s = start_s + dt_s * static_cast<double>(i + 1) / static_cast<double>(steps);
     step(end_s - state_.t_s);
     state_.t_s = end_s;
   }
-  for (const auto& actor : actors_)
-    fascia::advance(*actor->def->character, actor->motion, dt_s, actor->state, actor->stats);
+  for (const auto& actor : actors_) {
+    actor->surroundings->setFrame(before_, state_);
+    fascia::advance(*actor->def->character, actor->motion, dt_s, actor->state, actor->stats,
+                    actor->surroundings.get());
+  }
 }
 
 void Performance::step(double h_s) {

@@ -51,6 +51,7 @@ class Performance {
 
   const Stage& stage_;
   OdeState state_;
+  OdeState before_;  // the frame
   BodySystem system_;
   std::unique_ptr<BodyStepper> stepper_;
   std::unique_ptr<Puppet> puppet_;
