@@ -3,7 +3,7 @@ grab("hook.bend", "pyramid.ring", 1.2)
 grab("hook.eye", "sky", 1.6)
 
 wait(2)
-if distance("hook.eye", "sky") < 0.01 and distance("pyramid.ring", "hook.bend") < 0.01
+if connected("hook.eye", "sky") and distance("pyramid.ring", "hook.bend") < 0.01
    and position("pyramid.middle").y > 0.8 then
   succeed()
 else

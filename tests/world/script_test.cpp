@@ -89,8 +89,12 @@ TEST(Script, ConnectsAndDisconnects) {
     connect("right 0", "left 1")
     release("right 0")
     log(connected("left 1", "right 0"))
+    connect("right 0", "post")
+    log(connected("right 0", "post"))
+    release("right 0")
+    log(connected("right 0", "post"))
   )"),
-            "true;false;false");
+            "true;false;false;true;false");
 }
 
 TEST(Script, WaitsForTimeAndConditions) {

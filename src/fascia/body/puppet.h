@@ -63,7 +63,7 @@ class Puppet {
   // makes their velocities one (§3.2), and what distance there is closes within kClosing_s.
   void connect(PuppetPointId point, const Target& target);
   void disconnect(PuppetPointId a, PuppetPointId b);
-  bool connected(PuppetPointId a, PuppetPointId b) const;
+  bool connected(PuppetPointId a, PuppetPointId b) const;  // also to a place, which may be either
   std::size_t connectionCount() const { return connections_.size(); }
   static constexpr double kClosing_s = 0.1;
 
@@ -100,6 +100,7 @@ class Puppet {
   struct Control {
     PuppetPointId point;
     ConstraintId constraint;
+    PuppetPointId place;  // that the point is connected to; invalid: it is led otherwise
   };
   struct Connection {
     PuppetPointId a, b;

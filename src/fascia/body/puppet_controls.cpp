@@ -30,7 +30,7 @@ ConstraintId Puppet::lead(PuppetPointId point, PointPath path) {
   const BodyPoint& on = bodyPoint(point);
   const ConstraintPtr constraint = makeTrajectory("control of " + name(point), on, std::move(path));
   endControl(point);
-  controls_.push_back({point, system_.hold(constraint)});
+  controls_.push_back({point, system_.hold(constraint), {}});
   return controls_.back().constraint;
 }
 
@@ -87,6 +87,7 @@ void Puppet::connect(PuppetPointId point, const Target& target) {
                                : makeClosingAttachment(title, on, *other, gap))});
   } else {
     lead(point, together ? pathOf(target) : pathBeside(pathOf(target), gap));
+    if (const auto* place = std::get_if<PuppetPointId>(&target)) controls_.back().place = *place;
   }
   matchVelocities();
 }
@@ -101,10 +102,14 @@ void Puppet::disconnect(PuppetPointId a, PuppetPointId b) {
 }
 
 bool Puppet::connected(PuppetPointId a, PuppetPointId b) const {
-  return std::ranges::any_of(connections_, [&](const Connection& connection) {
+  const bool tied = std::ranges::any_of(connections_, [&](const Connection& connection) {
     return (samePoint(connection.a, a) && samePoint(connection.b, b)) ||
            (samePoint(connection.a, b) && samePoint(connection.b, a));
   });
+  return tied || std::ranges::any_of(controls_, [&](const Control& control) {
+           return (samePoint(control.point, a) && control.place == b) ||
+                  (samePoint(control.point, b) && control.place == a);
+         });
 }
 
 ConstraintPtr Puppet::makeSpring(const Pull& pull) const {

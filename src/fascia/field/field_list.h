@@ -9,6 +9,15 @@ namespace fascia {
 // Several fields as one: the solids of the first, then those of the second, numbered on. The fields
 // must outlive it, and may change, but for how many solids they have.
 class FieldList final : public Field {
+  // Calls visit(field, id) with the field that the solid is in, and its number there.
+  template <class Visit>
+  decltype(auto) with(SolidId solid, const Visit& visit) const {
+    std::size_t i = 0;
+    while (solid.index() >= ends_[i]) ++i;
+    const std::size_t first = i == 0 ? 0 : ends_[i - 1];
+    return visit(*fields_[i], SolidId(static_cast<std::int64_t>(solid.index() - first)));
+  }
+
  public:
   void clear() { fields_.clear(), ends_.clear(); }
   void add(const Field& field) {
@@ -44,15 +53,6 @@ class FieldList final : public Field {
   }
 
  private:
-  // Calls visit(field, id) with the field that the solid is in, and its number there.
-  template <class Visit>
-  decltype(auto) with(SolidId solid, const Visit& visit) const {
-    std::size_t i = 0;
-    while (solid.index() >= ends_[i]) ++i;
-    const std::size_t first = i == 0 ? 0 : ends_[i - 1];
-    return visit(*fields_[i], SolidId(static_cast<std::int64_t>(solid.index() - first)));
-  }
-
   std::vector<const Field*> fields_;
   std::vector<std::size_t> ends_;  // of each field's solids
 };

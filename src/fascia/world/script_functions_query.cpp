@@ -21,7 +21,7 @@ int distance(ScriptCall& call) {
 }
 
 int connected(ScriptCall& call) {
-  const PuppetPointId a = call.bodyPoint(1), b = call.bodyPoint(2);
+  const PuppetPointId a = call.bodyPoint(1), b = call.anyPoint(2);
   lua_pushboolean(call.L, call.puppet().connected(a, b) ? 1 : 0);
   return 1;
 }
@@ -73,10 +73,10 @@ std::span<const ScriptFunction> queryFunctions() {
        "How far two points or places are apart.",
        distance},
       {"connected",
-       {{"a", "string", "a point of a body"}, {"b", "string", "of another one"}},
+       {{"a", "string", "a point of a body"}, {"b", "string", "of another one, or a place"}},
        "boolean",
        "whether they are",
-       "Tells whether connect() or grab() has tied two points.",
+       "Tells whether connect() or grab() has tied two points, or one to a place.",
        connected},
       {"time", {}, "number", "s", "Simulated time since the start.", time},
       {"random",
