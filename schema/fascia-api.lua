@@ -163,9 +163,9 @@ function velocity(point) end
 ---@return number # m
 function distance(a, b) end
 
----Tells whether connect() or grab() has tied two points.
+---Tells whether connect() or grab() has tied two points, or one to a place.
 ---@param a string a point of a body
----@param b string of another one
+---@param b string of another one, or a place
 ---@return boolean # whether they are
 function connected(a, b) end
 

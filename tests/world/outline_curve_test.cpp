@@ -45,14 +45,18 @@ TEST(ClosedCurve, LeavesWhatIsNoOutlineToTheCheckOfOutlines) {
   EXPECT_TRUE(closedCurve(std::vector<Vec2>(5, Vec2(1, 1))).empty());
 }
 
-// A round plate becomes an ellipsoid of revolution.
-TEST(Inflate, TurnsARoundPlateIntoAnEllipsoid) {
-  const BodySurfacePtr plate = makeOutlineSurface(circle(128), 0.4);
+// A round plate of radius R + a and thickness 2a becomes a disc of radius R inside of half a torus.
+TEST(Inflate, GivesARoundPlateTheRimOfATorus) {
+  const double R = 0.8, a = 0.2;
+  const BodySurfacePtr plate = makeOutlineSurface(circle(128), 2 * a);
   TriangleMesh mesh = plate->mesh();
   inflate(*plate, mesh);
-  for (const Eigen::Vector3f& p : mesh.positions)
-    EXPECT_NEAR(p.z() * p.z() / 0.04f + p.head<2>().squaredNorm(), 1, 0.02);
-  EXPECT_NEAR(enclosedVolume(mesh), 4.0 / 3 * kPi * 0.2, 0.05);
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    const double beyond = std::max(0.0, static_cast<double>(p.head<2>().norm()) - R);
+    EXPECT_NEAR(std::hypot(beyond, p.z()), a, 2e-3);
+  }
+  const double volume = kPi * R * R * 2 * a + kPi * kPi * a * a * R + 4.0 / 3 * kPi * a * a * a;
+  EXPECT_NEAR(enclosedVolume(mesh), volume, 0.03 * volume);
 }
 
 }  // namespace

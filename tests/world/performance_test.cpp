@@ -179,6 +179,52 @@ TEST(Performance, BodiesLandOnCharactersWhereTheseArePlaced) {
   EXPECT_LT(lowest, top + 0.25);
 }
 
+// How deep the deepest point of the doll's skin is in a ball, m; negative: outside.
+double deepest(const Performance& performance, const Stage& stage, const Vec3& center_m,
+               double radius_m) {
+  const SceneCharacterDef& doll = stage.def().characters[0];
+  TriangleMesh skin;
+  skinSurface(*doll.character->skin(), performance.character(0).skin, skin);
+  double out = -1;
+  for (const Eigen::Vector3f& p : skin.positions)
+    out = std::max(out, radius_m - (placeOf(doll).point(p.cast<double>()) - center_m).norm());
+  return out;
+}
+
+TEST(Performance, SkinsOnGridsAreKeptOutOfPropsAndBodies) {
+  SceneDef def = withDoll();
+  CharacterDef doll = test::smallCharacter();
+  ASSERT_TRUE(doll.skin);
+  def.characters[0].character = std::make_shared<const Character>(doll);
+  const Stage bare(def);
+  // Half in the belly, whose skin is about 0.25 m around the hip.
+  const Vec3 beside = placeOf(def.characters[0]).point(Vec3(0, 1, 0.3));
+  EXPECT_GT(deepest(Performance(bare), bare, beside, 0.12), 0.03);
+  def.props.emplace_back().name = "stone";
+  def.props[0].solid.shape = "sphere";
+  def.props[0].solid.parameters = {0.12};
+  def.props[0].position_m = beside;
+  const Stage stage(def);
+  Performance performance(stage);
+  run(performance, 0.2);
+  EXPECT_LT(deepest(performance, stage, beside, 0.12), 1e-3);
+
+  // The same as a body that is held there.
+  def.props.clear();
+  def.bodies[0] = test::ball("ball", beside, 0.12);
+  def.bodies[0].rigidity_Pa = 1e7, def.bodies[0].volume_Pa = 2e7;
+  for (const char* point : {"left", "right", "front"}) def.bodies[0].points.push_back({point, {}});
+  def.bodies[0].points[1].position_m = Vec3(-0.1, 0, 0);
+  def.bodies[0].points[2].position_m = Vec3(0.1, 0, 0);
+  def.bodies[0].points[3].position_m = Vec3(0, 0, 0.1);
+  for (const char* point : {"ball.top", "ball.left", "ball.right", "ball.front"})
+    def.constraints.push_back({"", SceneConstraintDef::Kind::nail, {point}});
+  const Stage held(def);
+  Performance second(held);
+  run(second, 0.2);
+  EXPECT_LT(deepest(second, held, beside, 0.12), 2e-3);
+}
+
 TEST(Performance, JointsOfCharactersArePlacesThatBodiesHangOn) {
   SceneDef def = withDoll();
   def.bodies[0].collides = false;

@@ -275,7 +275,7 @@ class SceneBodyCodec final : public ObjectCodec<SceneBodyDef> {
       own("smooth_outline", &SceneBodyDef::smooth_outline, booleans(),
           "A closed curve through the points; a point twice in a row is a corner"),
       own("thickness_m", &SceneBodyDef::thickness_m, numbers(positive(1e3)), "Of the plate"),
-      own("inflated", &SceneBodyDef::inflated, booleans(), "Drawn like a cushion, not like a plate"),
+      own("inflated", &SceneBodyDef::inflated, booleans(), "Drawn with a round rim, like a cushion"),
       own("mesh", &SceneBodyDef::mesh_file, names(),
           "A closed mesh: glTF or GLB in the folder of this file, or below it")};
 };

@@ -21,23 +21,14 @@ FloatArray depths(const BodySurface& plate, const std::vector<Eigen::Vector3f>& 
   return distance;
 }
 
-// The depth where the plate is widest; where that is, no vertex need be.
-float greatestDepth(const BodySurface& plate, const TriangleMesh& mesh) {
-  std::vector<Eigen::Vector3f> samples = mesh.positions;
-  for (const auto& [a, b, c] : mesh.triangles)
-    samples.emplace_back((mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3);
-  const FloatArray depth = depths(plate, samples);
-  return std::max(*std::ranges::max_element(depth), 1e-9f);
-}
-
 }  // namespace
 
 void inflate(const BodySurface& plate, TriangleMesh& mesh) {
   const FloatArray depth = depths(plate, mesh.positions);
-  const float widest = greatestDepth(plate, mesh);
+  const auto half_m = static_cast<float>(0.5 * plate.bounds_m().size().z());
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    const float fromMiddle = 1 - std::min(depth[i] / widest, 1.f);
-    mesh.positions[i].z() *= std::sqrt(1 - fromMiddle * fromMiddle);
+    const float fromTop = 1 - std::min(depth[i] / half_m, 1.f);
+    mesh.positions[i].z() *= std::sqrt(1 - fromTop * fromTop);
   }
   WeldedNormals(mesh).compute(mesh.positions, mesh.normals);
 }

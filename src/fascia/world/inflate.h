@@ -5,7 +5,8 @@
 namespace fascia {
 
 // Turns the mesh of a plate in the plane z = 0 into that of a cushion with the same outline: its
-// thickness grows from nothing at the rim like a circle's, to that of the plate where it is widest.
+// rim is round, half a circle of the plate's thickness; where it is narrower than that it is
+// thinner.
 void inflate(const BodySurface& plate, TriangleMesh& mesh);
 
 }  // namespace fascia

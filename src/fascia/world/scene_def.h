@@ -45,7 +45,7 @@ struct SceneBodyDef : BodyMaterialDef {
   std::vector<Vec2> outline_m;  // around, in either sense
   bool smooth_outline = false;  // a closed curve through the points instead of a polygon
   double thickness_m = 0.05;    // of the plate
-  bool inflated = false;        // drawn like a cushion of that thickness instead of a plate
+  bool inflated = false;        // drawn with a round rim, like a cushion
   std::string mesh_file;        // glTF beside the scene
   std::shared_ptr<const TriangleMesh> mesh;  // read from the file; not saved
 
