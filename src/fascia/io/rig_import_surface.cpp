@@ -115,7 +115,7 @@ void noteOddSize(double scale, RiggedModel& model) {
   const bool lies = size.y() < 0.25 * size.z() && size.x() > 0.2 * size.z() &&
                     std::abs(box.low.z()) < 0.05 * size.z();
   if (lies) {
-    model.notes.push_back(
+    model.notes.emplace_back(
         "this character seems to lie on its back: if it should stand, its file was written with z "
         "up; export it with y up, as glTF wants it");
   }

@@ -121,8 +121,8 @@ class Retargeter {
   Vec3 rootGoal() const;
   Vec3 ballGoal(const DrivenLeg& leg, std::size_t which) const;
   Mat3 delta(int driven) const;
-  void note(std::string text) const {
-    if (notes_) notes_->push_back(std::move(text));
+  void note(std::string_view text) const {
+    if (notes_) notes_->emplace_back(text);
   }
   const Transform& source(int driven) const { return sourceWorld_[at(driven_[at(driven)].source)]; }
   const Transform& target(int driven) const { return world_[at(driven_[at(driven)].target)]; }
