@@ -238,7 +238,7 @@ TEST(Glb, BlenderReadsOurFrames) {
   writeFileWhole(folder / "frames.f32", frames);
   expectSuccess("blender", {"--background", "--factory-startup", "--python-exit-code", "1",
                             "--python", FASCIA_SOURCE_DIR "/tests/io/blender_readback.py", "--",
-                            folder / "a.glb", folder / "frames.f32", "30"});
+                            folder / "a.glb", folder / "frames.f32", "30", "skin"});
 }
 
 }  // namespace

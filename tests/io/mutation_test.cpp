@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <random>
 
 #include <fascia/io/cache.h>
 #include <fascia/io/file.h>
 #include <fascia/io/pc2.h>
+#include <fascia/world/performance.h>
 
 #include "sample.h"
+#include "scene_sample.h"
 
 namespace fascia {
 namespace {
@@ -60,6 +63,33 @@ TEST(Mutations, CharacterFileReadsOrSaysWhyNot) {
   });
   EXPECT_GT(accepted, 10);
   EXPECT_LT(accepted, 3000);
+}
+
+TEST(Mutations, ScenesOfTheExamplesReadOrSayWhyNot) {
+  int scenes = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(FASCIA_SOURCE_DIR) / "examples")) {
+    const std::string path = entry.path().string();
+    if (!path.ends_with(".fascia.json") || !isSceneFile(path)) continue;
+    const int accepted = readMutations(readFile(path, 1 << 20), 400, [](const std::string& text) {
+      sceneText(readSceneText(text).def);
+    });
+    EXPECT_GT(accepted, 10) << path;
+    EXPECT_LT(accepted, 350) << path;
+    ++scenes;
+  }
+  EXPECT_GT(scenes, 2);
+}
+
+TEST(Mutations, ScenesThatReadArePerformedOrSayWhyNot) {
+  int accepted = 0;
+  for (const char* text : {sample::kSmallScene, sample::kFlatScene})
+    accepted += readMutations(text, 150, [](const std::string& mutant) {
+      const Stage stage(readSceneText(mutant).def);
+      Performance(stage, 1).advance(1.0 / 60);
+    });
+  EXPECT_GT(accepted, 10);
+  EXPECT_LT(accepted, 200);
 }
 
 TEST(Mutations, CacheReadsOrSaysWhyNot) {

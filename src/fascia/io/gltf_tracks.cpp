@@ -55,12 +55,11 @@ GlbBuilder::Json placeNode(const std::string& name, const PlaceTrack& track) {
 }
 
 void addTracks(const std::vector<float>& times, const PlaceTrack& track, std::size_t node,
-               GlbBuilder& glb, GltfAnimation& animation) {
-  constexpr float kMetres = 1e-5f, kHalfRadians = 1e-4f;
+               GlbBuilder& glb, GltfAnimation& animation, const TrackTolerance& tolerance) {
   addTrack(
-      times, track.translations, kMetres, node, "translation", glb, animation,
+      times, track.translations, tolerance.metres, node, "translation", glb, animation,
       [&](const auto& values) { return glb.addVectors(values, false, GlbBuilder::Target::none); });
-  addTrack(times, track.rotations, kHalfRadians, node, "rotation", glb, animation,
+  addTrack(times, track.rotations, tolerance.halfRadians, node, "rotation", glb, animation,
            [&](const auto& values) { return glb.addQuaternions(values); });
 }
 

@@ -19,8 +19,13 @@ struct PlaceTrack {
 
 // A node that stands where the track starts.
 GlbBuilder::Json placeNode(const std::string& name, const PlaceTrack& track);
+// What a frame may differ from the blend of its neighbours to be dropped. Joints' skins are morphs
+// of their own, so that their nodes need no more than what can be seen.
+struct TrackTolerance {
+  float metres = 1e-5f, halfRadians = 1e-4f;
+};
 // Animates it; drops frames that lie between their neighbours, and tracks that do not move.
 void addTracks(const std::vector<float>& times, const PlaceTrack& track, std::size_t node,
-               GlbBuilder& glb, GltfAnimation& animation);
+               GlbBuilder& glb, GltfAnimation& animation, const TrackTolerance& tolerance = {});
 
 }  // namespace fascia

@@ -5,13 +5,11 @@
 #include <limits>
 
 #include <fascia/geometry/box_tree.h>
+#include <fascia/io/gltf_triangles.h>
 #include <fascia/io/rig_import_surface.h>
 
 namespace fascia {
 namespace {
-
-constexpr std::size_t kMostVertices = 4'000'000, kMostCorners = 6 * kMostVertices;
-constexpr int kTriangles = 4, kFan = 6;  // between them: strips
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -41,25 +39,6 @@ struct Mended {
     note(loose, " meshes have neither a skin nor a joint above: they move with the root");
   }
 };
-
-// Triangles out of a primitive's run of indices (glTF 2.0, 3.7.2.1).
-std::vector<std::array<std::uint32_t, 3>> trianglesOf(int mode,
-                                                      const std::vector<std::uint32_t>& run) {
-  std::vector<std::array<std::uint32_t, 3>> out;
-  if (mode == kTriangles) {
-    for (std::size_t i = 0; i + 3 <= run.size(); i += 3)
-      out.push_back({run[i], run[i + 1], run[i + 2]});
-    return out;
-  }
-  for (std::size_t i = 0; i + 3 <= run.size(); ++i) {
-    if (mode == kFan) {
-      out.push_back({run[i + 1], run[i + 2], run[0]});
-    } else {
-      out.push_back({run[i], run[i + 1 + i % 2], run[i + 2 - i % 2]});
-    }
-  }
-  return out;
-}
 
 // The joints and weights of a primitive's vertices as the file has them: all sets, side by side.
 struct RawWeights {
@@ -100,8 +79,8 @@ class MeshReader {
 
   void readPrimitive(int n, bool skinned, std::size_t index, const GltfPlace& place) {
     const GltfPlace attributes = place["attributes"];
-    const int mode = place["mode"].indexOr(kTriangles, 7);
-    if (mode < kTriangles) {
+    const int mode = place["mode"].indexOr(kGltfTriangles, 7);
+    if (mode < kGltfTriangles) {
       ++mended_.notTriangles;
       return;
     }
@@ -149,8 +128,9 @@ class MeshReader {
 
   void checkBudget(const GltfPlace& positions) const {
     const std::size_t count = document_.elementCount(positions.index(accessorCount()));
-    if (count > kMostVertices - model_.vertices.size()) {
-      positions.fail("more than " + std::to_string(kMostVertices) + " vertices in one character");
+    if (count > kMostGltfVertices - model_.vertices.size()) {
+      positions.fail("more than " + std::to_string(kMostGltfVertices) +
+                     " vertices in one character");
     }
   }
 
@@ -316,15 +296,15 @@ class MeshReader {
     if (place["indices"]) {
       const int accessor = place["indices"].index(accessorCount());
       corners_ += document_.elementCount(accessor);
-      if (corners_ > kMostCorners) {
-        place["indices"].fail("more than " + std::to_string(kMostCorners) +
+      if (corners_ > kMostGltfCorners) {
+        place["indices"].fail("more than " + std::to_string(kMostGltfCorners) +
                               " corners of triangles");
       }
       run = document_.integers(accessor, 1);
     } else {
       for (std::uint32_t i = 0; i < part.vertexCount; ++i) run.push_back(i);
     }
-    for (std::array<std::uint32_t, 3> t : trianglesOf(mode, run)) {
+    for (std::array<std::uint32_t, 3> t : gltfTriangles(mode, run)) {
       if (*std::max_element(t.begin(), t.end()) >= part.vertexCount) {
         ++mended_.badCorners;
         continue;

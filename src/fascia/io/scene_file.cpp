@@ -4,7 +4,7 @@
 #include <fascia/io/document.h>
 #include <fascia/io/file.h>
 #include <fascia/io/inside_folder.h>
-#include <fascia/io/rig_import.h>
+#include <fascia/io/mesh_file.h>
 #include <fascia/io/scene_codecs.h>
 
 namespace fascia {
@@ -23,14 +23,6 @@ void addFaults(const Error& error, const std::string& subject, const std::string
     issue.hint = fault.where.pointer == pointer ? fault.hint : std::string();
     issues.push_back(std::move(issue));
   }
-}
-
-std::shared_ptr<const TriangleMesh> readMesh(const std::string& path) {
-  const RiggedModel model = readRiggedModel(path);
-  auto mesh = std::make_shared<TriangleMesh>();
-  mesh->positions = model.points_m;
-  mesh->triangles = model.triangles;
-  return mesh;
 }
 
 // Runs `read` on the file's real place; what goes wrong is told from `pointer`.
@@ -58,7 +50,9 @@ void readOthers(SceneDef& def, const BuildOptions& options) {
     SceneBodyDef& body = def.bodies[i];
     if (body.form != SceneBodyDef::Form::mesh) continue;
     readBeside(def, body.mesh_file, "the mesh", "/bodies/" + std::to_string(i) + "/mesh", issues,
-               [&](const std::string& place) { body.mesh = readMesh(place); });
+               [&](const std::string& place) {
+                 body.mesh = std::make_shared<const TriangleMesh>(readMeshFile(place));
+               });
   }
   if (!def.script.empty())
     readBeside(def, def.script, "the script", "/script", issues, [&](const std::string& place) {

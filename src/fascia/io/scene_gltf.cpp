@@ -75,7 +75,9 @@ class SceneWriter {
     const BodyMotion motion = motionOf(shape, id, stage_.bodies(), recording_);
     const std::size_t node = glb_.add("nodes", placeNode(def.name, motion.place));
     roots_.push_back(node);
-    addTracks(times_, motion.place, node, glb_, animation_);
+    // Morph targets are added to just this place: a looser track would show in every vertex.
+    addTracks(times_, motion.place, node, glb_, animation_,
+              {kUnseen_m, kUnseen_m / std::max(1.0f, static_cast<float>(shape.size_m()))});
     addMorphs(shape, motion, stage_.look(id), def.color, def.name, node);
     // A node has one mesh: ornaments are its children.
     for (std::size_t i = 0; i < def.ornaments.size(); ++i) {
