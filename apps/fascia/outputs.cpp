@@ -52,6 +52,7 @@ void checkOverwriting(const std::vector<std::string>& inputs,
     return fs::weakly_canonical(fs::absolute(path));
   };
   std::vector<fs::path> taken;
+  taken.reserve(inputs.size());
   for (const std::string& input : inputs) taken.push_back(placeOf(input));
   std::vector<std::string> files{stats};
   files.insert(files.end(), outputs.begin(), outputs.end());

@@ -69,6 +69,18 @@ GlbBuilder::Json linearColor(float r, float g, float b) {
   return {linearFromSrgb(r), linearFromSrgb(g), linearFromSrgb(b), 1.0};
 }
 
+GlbBuilder::Json addPrimitive(const TriangleMesh& mesh, std::size_t material, GlbBuilder& glb) {
+  const auto vertices = GlbBuilder::Target::vertices;
+  GltfJson attributes = {{"POSITION", glb.addVectors(mesh.positions, true, vertices)},
+                         {"NORMAL", glb.addVectors(mesh.normals, false, vertices)}};
+  if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = glb.addUvs(mesh.uvs);
+  GltfJson primitive = {{"attributes", std::move(attributes)}};
+  primitive["indices"] = glb.addIndices({mesh.triangles.data()->data(), 3 * mesh.triangles.size()},
+                                        mesh.positions.size());
+  primitive["material"] = material;
+  return primitive;
+}
+
 std::size_t addSkinMesh(const SkinDef& def, const Recording& recording, const Texture& texture,
                         double tolerance_m, GlbBuilder& glb, std::vector<std::size_t>& kept) {
   kept = keepSkinFrames(recording, tolerance_m);
@@ -77,14 +89,7 @@ std::size_t addSkinMesh(const SkinDef& def, const Recording& recording, const Te
   const WeldedNormals welded(mesh);
   welded.compute(mesh.positions, mesh.normals);
 
-  const auto vertices = GlbBuilder::Target::vertices;
-  GltfJson attributes = {{"POSITION", glb.addVectors(mesh.positions, true, vertices)},
-                         {"NORMAL", glb.addVectors(mesh.normals, false, vertices)}};
-  if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = glb.addUvs(mesh.uvs);
-  GltfJson primitive = {{"attributes", attributes}};
-  primitive["indices"] = glb.addIndices({mesh.triangles.data()->data(), 3 * mesh.triangles.size()},
-                                        mesh.positions.size());
-  primitive["material"] = addSkinMaterial(def, texture, glb);
+  GltfJson primitive = addPrimitive(mesh, addSkinMaterial(def, texture, glb), glb);
 
   const double unseenNormal = tolerance_m > 0 ? 0.004 : 0;  // a quarter of a degree
   GltfJson targets = GltfJson::array(), names = GltfJson::array();

@@ -24,6 +24,9 @@ std::size_t addSkinMesh(const SkinDef& def, const Recording& recording, const Te
 void addSkinAnimation(const Recording& recording, const std::vector<std::size_t>& kept,
                       std::size_t node, GlbBuilder& glb, GltfAnimation& animation);
 
+// A primitive of a mesh with normals, of this material.
+GlbBuilder::Json addPrimitive(const TriangleMesh& mesh, std::size_t material, GlbBuilder& glb);
+
 // A colour as glTF wants it: linear, with alpha.
 GlbBuilder::Json linearColor(float r, float g, float b);
 

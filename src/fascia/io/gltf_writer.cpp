@@ -105,13 +105,7 @@ class CharacterNodes {
       const FleshSolidDef& def = flesh.def(id);
       TriangleMesh mesh = flesh.restSolid(id).tessellate(options_.solidDetail);
       WeldedNormals(mesh).compute(mesh.positions, mesh.normals);
-      const auto vertices = GlbBuilder::Target::vertices;
-      GltfJson primitive;
-      primitive["attributes"] = {{"POSITION", glb_.addVectors(mesh.positions, true, vertices)},
-                                 {"NORMAL", glb_.addVectors(mesh.normals, false, vertices)}};
-      primitive["indices"] = glb_.addIndices(
-          {mesh.triangles.data()->data(), 3 * mesh.triangles.size()}, mesh.positions.size());
-      primitive["material"] = solidMaterial(def.color);
+      const GltfJson primitive = addPrimitive(mesh, solidMaterial(def.color), glb_);
       const std::size_t index =
           glb_.add("meshes", {{"name", def.name}, {"primitives", GltfJson::array({primitive})}});
       const Vec3& t = def.position_m;

@@ -10,58 +10,47 @@ constexpr NumberRange kLengths{-1e6, 1e6};
 constexpr NumberRange kFrictions{0, 10};
 constexpr std::size_t kMostBodies = 20'000, kMostOutlinePoints = 2048;
 
-// A place or vector: [x, y, z], or [x, y] in the plane z = 0.
-class PlaceCodec final : public Codec<Vec3> {
+// Coordinates of a place or vector: at least `kLeast` of them, what is missing is 0.
+template <class Vector, std::size_t kLeast>
+class CoordinatesCodec final : public Codec<Vector> {
  public:
-  void read(const Json& json, const JsonPath& path, Reading& reading, Vec3& value) const override {
-    if (!json.is(Json::Kind::list) || json.list().size() < 2 || json.list().size() > 3) {
-      reading.unexpected(json, path, "a list of 2 or 3 numbers");
+  void read(const Json& json, const JsonPath& path, Reading& reading,
+            Vector& value) const override {
+    if (!json.is(Json::Kind::list) || json.list().size() < kLeast || json.list().size() > kMost) {
+      reading.unexpected(json, path,
+                         kLeast == kMost ? "a list of 2 numbers" : "a list of 2 or 3 numbers");
       return;
     }
-    Vec3 found = Vec3::Zero();
+    Vector found = Vector::Zero();
     for (std::size_t i = 0; i < json.list().size(); ++i)
       readNumber(json.list()[i], path[i], reading, kLengths, found[static_cast<int>(i)]);
     value = found;
   }
-  Json write(const Vec3& value) const override {
-    return Json::List{value.x(), value.y(), value.z()};
+  Json write(const Vector& value) const override {
+    Json::List out;
+    for (const double x : value) out.emplace_back(x);
+    return out;
   }
   Json schema() const override {
     Json out;
     out.set("type", "array");
-    out.set("minItems", 2);
-    out.set("maxItems", 3);
+    out.set("minItems", static_cast<int>(kLeast));
+    out.set("maxItems", static_cast<int>(kMost));
     out.set("items", kLengths.schema());
     return out;
   }
-  bool same(const Vec3& a, const Vec3& b) const override { return a == b; }
+  bool same(const Vector& a, const Vector& b) const override { return a == b; }
+
+ private:
+  static constexpr std::size_t kMost = Vector::RowsAtCompileTime;
 };
+
+// [x, y, z], or [x, y] in the plane z = 0.
+using PlaceCodec = CoordinatesCodec<Vec3, 2>;
 
 CodecPtr<Vec3> places() {
   return std::make_shared<PlaceCodec>();
 }
-
-class Vec2Codec final : public Codec<Vec2> {
- public:
-  void read(const Json& json, const JsonPath& path, Reading& reading, Vec2& value) const override {
-    if (!json.is(Json::Kind::list) || json.list().size() != 2) {
-      reading.unexpected(json, path, "a list of 2 numbers");
-      return;
-    }
-    for (std::size_t i = 0; i < 2; ++i)
-      readNumber(json.list()[i], path[i], reading, kLengths, value[static_cast<int>(i)]);
-  }
-  Json write(const Vec2& value) const override { return Json::List{value.x(), value.y()}; }
-  Json schema() const override {
-    Json out;
-    out.set("type", "array");
-    out.set("minItems", 2);
-    out.set("maxItems", 2);
-    out.set("items", kLengths.schema());
-    return out;
-  }
-  bool same(const Vec2& a, const Vec2& b) const override { return a == b; }
-};
 
 // {"tip": [0, 1, 0], …}: places by their names.
 class NamedPlacesCodec final : public Codec<std::vector<NamedPlaceDef>> {
@@ -117,12 +106,12 @@ class AngleCodec final : public Codec<double> {
   static constexpr NumberRange kRange_deg{-36000, 36000};
 };
 
-class PlacedSolidCodec final : public ObjectCodec<PlacedSolidDef> {
+class PlacedSolidCodec final : public SolidOwnerCodec<PlacedSolidDef> {
  public:
   enum class Role { ornament, prop };
   explicit PlacedSolidCodec(Role role)
-      : ObjectCodec(role == Role::prop ? "A rigid solid that stands; bodies collide with it."
-                                       : "A solid that a body carries for the looks.") {
+      : SolidOwnerCodec(role == Role::prop ? "A rigid solid that stands; bodies collide with it."
+                                           : "A solid that a body carries for the looks.") {
     using P = PlacedSolidDef;
     field("name", &P::name, names(), "Its name",
           role == Role::prop ? Need::required : Need::optional);
@@ -134,27 +123,6 @@ class PlacedSolidCodec final : public ObjectCodec<PlacedSolidDef> {
     if (role == Role::prop)
       field("friction", &P::friction, numbers(kFrictions), "Coulomb's coefficient");
   }
-  Json write(const PlacedSolidDef& value) const override {
-    Json out = ObjectCodec::write(value);
-    SolidMembers::sortForPeople(out);
-    return out;
-  }
-
- protected:
-  bool readOther(const Json& whole, const Json::Member& member, const JsonPath& path,
-                 Reading& reading, PlacedSolidDef& value) const override {
-    return members_.read(whole, member, path, reading, value.solid);
-  }
-  void offerOthers(const Json& whole, NearestName& nearest) const override {
-    members_.offer(whole, nearest);
-  }
-  void writeOthers(const PlacedSolidDef& value, Json& out) const override {
-    members_.write(value.solid, out);
-  }
-  void schemaOthers(Json& properties) const override { members_.addToSchema(properties); }
-
- private:
-  SolidMembers members_;
 };
 
 CodecPtr<ScatterDef> scatterCodec() {
@@ -179,7 +147,8 @@ class SceneBodyCodec final : public ObjectCodec<SceneBodyDef> {
     field("name", &B::name, names(), "Its name, without '.'", Need::required);
     field("basis", &B::basis, bodyBasisCodec(), "The shapes that it can take");
     addMaterialFields(*this);
-    field("position_m", &B::position_m, places(), "Where its origin is at the start; of plates z is the layer they are drawn in");
+    field("position_m", &B::position_m, places(),
+          "Where its origin is at the start; of plates z is the layer they are drawn in");
     field("orientation_deg", &B::orientation_rad, angleVectors(),
           "Turns about x, y, z; applied as Rz Ry Rx");
     field("velocity_m_per_s", &B::velocity_m_per_s, places(), "Of its centre, at the start");
@@ -268,14 +237,15 @@ class SceneBodyCodec final : public ObjectCodec<SceneBodyDef> {
 
   SolidMembers members_;
   CodecPtr<std::vector<Vec2>> outline_ =
-      listOf<Vec2>(std::make_shared<Vec2Codec>(), kMostOutlinePoints, Vec2::Zero());
+      listOf<Vec2>(std::make_shared<CoordinatesCodec<Vec2, 2>>(), kMostOutlinePoints, Vec2::Zero());
   std::vector<Field> fields_{
       own("outline_m", &SceneBodyDef::outline_m, outline_,
           "Around a plate in the plane z = 0, for scenes of two dimensions"),
       own("smooth_outline", &SceneBodyDef::smooth_outline, booleans(),
           "A closed curve through the points; a point twice in a row is a corner"),
       own("thickness_m", &SceneBodyDef::thickness_m, numbers(positive(1e3)), "Of the plate"),
-      own("inflated", &SceneBodyDef::inflated, booleans(), "Drawn with a round rim, like a cushion"),
+      own("inflated", &SceneBodyDef::inflated, booleans(),
+          "Drawn with a round rim, like a cushion"),
       own("mesh", &SceneBodyDef::mesh_file, names(),
           "A closed mesh: glTF or GLB in the folder of this file, or below it")};
 };
@@ -349,8 +319,9 @@ CodecPtr<GroundDef> groundCodec() {
 
 CodecPtr<ViewDef> viewCodec() {
   auto codec = std::make_shared<ObjectCodec<ViewDef>>("What a picture shows by itself.");
-  codec->field("camera", &ViewDef::camera, texts(200),
-               "As on the command line; missing: front in two dimensions, else three-quarter")
+  codec
+      ->field("camera", &ViewDef::camera, texts(200),
+              "As on the command line; missing: front in two dimensions, else three-quarter")
       .field("low_m", &ViewDef::low_m, places(), "A corner of the box that is to be seen")
       .field("high_m", &ViewDef::high_m, places(), "The other; missing: all that moves is seen");
   return codec;

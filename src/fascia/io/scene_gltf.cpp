@@ -101,15 +101,10 @@ class SceneWriter {
     deform(shape, motion, mesh);
     for (Coordinate& c : coordinates) toBase(c, mesh);
     normalize(mesh.normals, coordinates);
-    GltfJson primitive;
-    const auto vertices = GlbBuilder::Target::vertices;
-    primitive["attributes"] = {{"POSITION", glb_.addVectors(mesh.positions, true, vertices)},
-                               {"NORMAL", glb_.addVectors(mesh.normals, false, vertices)}};
-    primitive["indices"] = glb_.addIndices(
-        {mesh.triangles.data()->data(), 3 * mesh.triangles.size()}, mesh.positions.size());
-    primitive["material"] = material(color);
+    GltfJson primitive = addPrimitive(mesh, material(color), glb_);
     GltfJson out = {{"name", name}};
     if (!coordinates.empty()) {
+      const auto vertices = GlbBuilder::Target::vertices;
       GltfJson targets = GltfJson::array(), names = GltfJson::array();
       std::vector<float> first;
       for (const Coordinate& c : coordinates) {
@@ -220,17 +215,10 @@ class SceneWriter {
 
   void addProp(std::size_t index) {
     const PlacedSolidDef& def = stage_.def().props[index];
-    const TriangleMesh mesh = stage_.prop(index).solid(SolidId(0)).tessellate(48);
-    TriangleMesh shown = mesh;
-    if (shown.normals.size() != shown.positions.size())
-      computeNormals(shown.positions, shown.triangles, shown.normals);
-    const auto vertices = GlbBuilder::Target::vertices;
-    GltfJson primitive;
-    primitive["attributes"] = {{"POSITION", glb_.addVectors(shown.positions, true, vertices)},
-                               {"NORMAL", glb_.addVectors(shown.normals, false, vertices)}};
-    primitive["indices"] = glb_.addIndices(
-        {shown.triangles.data()->data(), 3 * shown.triangles.size()}, shown.positions.size());
-    primitive["material"] = material(def.color);
+    TriangleMesh mesh = stage_.prop(index).solid(SolidId(0)).tessellate(48);
+    if (mesh.normals.size() != mesh.positions.size())
+      computeNormals(mesh.positions, mesh.triangles, mesh.normals);
+    const GltfJson primitive = addPrimitive(mesh, material(def.color), glb_);
     PlaceTrack place;
     place.add(stage_.prop(index).frame(SolidId(0)));
     GltfJson node = placeNode(def.name, place);

@@ -107,9 +107,9 @@ CodecPtr<SoftSolidDef> softCodec() {
   return codec;
 }
 
-class SolidCodec final : public ObjectCodec<FleshSolidDef> {
+class SolidCodec final : public SolidOwnerCodec<FleshSolidDef> {
  public:
-  SolidCodec() : ObjectCodec("A solid on a joint, with the parameters of its shape.") {
+  SolidCodec() : SolidOwnerCodec("A solid on a joint, with the parameters of its shape.") {
     field("name", &FleshSolidDef::name, names(), "The solid's name", Need::required);
     field("joint", &FleshSolidDef::joint, names(), "The joint it moves with", Need::required);
     field("position_m", &FleshSolidDef::position_m, vectors({-1e6, 1e6}), "In the joint's frame");
@@ -121,28 +121,6 @@ class SolidCodec final : public ObjectCodec<FleshSolidDef> {
           "Parameters that joint values drive");
     field("soft", &FleshSolidDef::soft, optionally(softCodec()), "");
   }
-
-  Json write(const FleshSolidDef& value) const override {
-    Json out = ObjectCodec::write(value);
-    SolidMembers::sortForPeople(out);
-    return out;
-  }
-
- protected:
-  bool readOther(const Json& whole, const Json::Member& member, const JsonPath& path,
-                 Reading& reading, FleshSolidDef& value) const override {
-    return members_.read(whole, member, path, reading, value.solid);
-  }
-  void offerOthers(const Json& whole, NearestName& nearest) const override {
-    members_.offer(whole, nearest);
-  }
-  void writeOthers(const FleshSolidDef& value, Json& out) const override {
-    members_.write(value.solid, out);
-  }
-  void schemaOthers(Json& properties) const override { members_.addToSchema(properties); }
-
- private:
-  SolidMembers members_;
 };
 
 }  // namespace

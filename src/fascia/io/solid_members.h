@@ -24,6 +24,33 @@ class SolidMembers {
   CodecPtr<std::vector<SolidDef::Step>> steps_;
 };
 
+// An object that has a solid, as its member `solid`.
+template <class T>
+class SolidOwnerCodec : public ObjectCodec<T> {
+ public:
+  using ObjectCodec<T>::ObjectCodec;
+
+  Json write(const T& value) const override {
+    Json out = ObjectCodec<T>::write(value);
+    SolidMembers::sortForPeople(out);
+    return out;
+  }
+
+ protected:
+  bool readOther(const Json& whole, const Json::Member& member, const JsonPath& path,
+                 Reading& reading, T& value) const override {
+    return members_.read(whole, member, path, reading, value.solid);
+  }
+  void offerOthers(const Json& whole, NearestName& nearest) const override {
+    members_.offer(whole, nearest);
+  }
+  void writeOthers(const T& value, Json& out) const override { members_.write(value.solid, out); }
+  void schemaOthers(Json& properties) const override { members_.addToSchema(properties); }
+
+ private:
+  SolidMembers members_;
+};
+
 // A text member of an object, or `otherwise`.
 std::string textOf(const Json& object, std::string_view key, const std::string& otherwise);
 
