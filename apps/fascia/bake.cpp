@@ -46,7 +46,7 @@ Examples:
   fascia bake examples/penguin.fascia.json --grid 128x64 --fps 30 -o fine.pc2)";
 
 struct BakeOptions {
-  std::string character;
+  std::string file;  // a character or scene
   std::vector<std::string> outputs;
   std::string stats;
   SimulationOptions simulation;
@@ -91,9 +91,9 @@ void writeOutput(const Character& character, const Recording& recording, const s
 // What the character is made of.
 std::vector<std::string> inputsOf(const Character& character, const std::string& motionFile,
                                   const BakeOptions& options) {
-  std::vector<std::string> out{options.character};
+  std::vector<std::string> out{options.file};
   if (const std::optional<RigDef>& rig = character.def().rig)
-    out.push_back((std::filesystem::path(options.character).parent_path() / rig->file).string());
+    out.push_back((std::filesystem::path(options.file).parent_path() / rig->file).string());
   if (!motionFile.empty()) out.push_back(motionFile);
   return out;
 }
@@ -102,15 +102,15 @@ void bake(BakeOptions& options, const Console& console) {
   checkFolders(options.outputs);
   checkFolders({options.stats});
   const ThreadLimit threads(options.simulation.threads);
-  if (isSceneFile(options.character)) {
+  if (isSceneFile(options.file)) {
     if (!options.rig.given().empty())
       throw Error("--as and its options are for characters on a rig");
-    bakeScene({options.character, options.outputs, options.stats, options.simulation}, console);
+    bakeScene({options.file, options.outputs, options.stats, options.simulation}, console);
     return;
   }
   const std::string motionFile =
       isMotionFile(options.simulation.motion) ? options.simulation.motion : std::string();
-  const Character character = prepareCharacter(options.character, options.simulation, console);
+  const Character character = prepareCharacter(options.file, options.simulation, console);
   checkRigBake(character, options.rig, options.outputs);
   std::vector<std::string> files;
   for (const std::string& output : options.outputs)
@@ -134,9 +134,10 @@ void bake(BakeOptions& options, const Console& console) {
 }  // namespace
 
 void addBake(CLI::App& program, Console& console) {
-  CLI::App& command = *program.add_subcommand("bake", "Simulate a motion and save the animation");
+  CLI::App& command =
+      *program.add_subcommand("bake", "Simulate a character or scene and save the animation");
   const auto options = std::make_shared<BakeOptions>();
-  command.add_option("CHARACTER", options->character, "A *.fascia.json file: a character or scene")
+  command.add_option("FILE", options->file, "A *.fascia.json file: a character or scene")
       ->required()
       ->type_name("");
   command.add_option("-o,--output", options->outputs, "File to write; may be given several times")

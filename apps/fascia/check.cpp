@@ -17,6 +17,7 @@ constexpr const char* kFooter =
 
 Examples:
   fascia check examples/penguin.fascia.json
+  fascia check examples/sky-hook.fascia.json
   fascia check --json mine.fascia.json yours.fascia.json)";
 
 // Builds what the file holds; a scene is started too: its script is read then.
@@ -49,7 +50,7 @@ void check(const std::vector<std::string>& paths, const Console& console) {
 void addCheck(CLI::App& program, Console& console) {
   CLI::App& command = *program.add_subcommand("check", "Find everything that is wrong with a file");
   const auto paths = std::make_shared<std::vector<std::string>>();
-  command.add_option("CHARACTER", *paths, "One or more *.fascia.json files")
+  command.add_option("FILE", *paths, "One or more *.fascia.json files: characters or scenes")
       ->required()
       ->type_name("");
   console.addFlags(command);

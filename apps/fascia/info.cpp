@@ -5,13 +5,17 @@
 #include <fascia/io/cache.h>
 #include <fascia/io/character_file.h>
 #include <fascia/io/rig_import.h>
+#include <fascia/io/scene_cache.h>
+#include <fascia/io/scene_file.h>
 #include <fascia/math/ode/integrators.h>
 #include <fascia/render/gl_context.h>
 
 #include "commands.h"
 #include "console.h"
+#include "facts.h"
 #include "motion_file.h"
 #include "outputs.h"
+#include "scene_facts.h"
 
 namespace fascia {
 namespace {
@@ -25,6 +29,7 @@ a joint map to edit and give back with --joint-map.
 Examples:
   fascia info
   fascia info examples/penguin.fascia.json
+  fascia info examples/sky-hook.fascia.json
   fascia info fox.glb
   fascia info human.fascia.json --motion walk.bvh
   fascia info penguin.fcache --json)";
@@ -32,41 +37,6 @@ Examples:
 struct InfoOptions {
   std::string file, motion, joint_map;
 };
-
-// What there is to tell: lines for a person, an object for a machine.
-class Facts {
- public:
-  void add(const std::string& name, int value) { add(name, value, fmt::format("{}", value)); }
-  void add(const std::string& name, double value) { add(name, value, fmt::format("{:g}", value)); }
-  void add(const std::string& name, const std::string& value) { add(name, value, value); }
-  void add(const std::string& name, Json value, const std::string& text) {
-    add(name, std::move(value), std::vector<std::string>{text});
-  }
-  void add(const std::string& name, Json value, const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) lines_.push_back(fmt::format("{:13}  {}", name, text));
-    answer_.set(name, std::move(value));
-  }
-
-  // Lines that stand for themselves, to be copied into a file.
-  void addLines(const std::string& name, Json value, std::string lines) {
-    while (lines.ends_with('\n')) lines.pop_back();
-    lines_.push_back(std::move(lines));
-    answer_.set(name, std::move(value));
-  }
-
-  void show(const Console& console) const {
-    for (const std::string& line : lines_) console.say(line);
-    console.answer(answer_);
-  }
-
- private:
-  std::vector<std::string> lines_;
-  Json answer_ = Json::Object{{"ok", true}};
-};
-
-int count(std::size_t n) {
-  return static_cast<int>(n);
-}
 
 std::string motionText(const std::string& name, double duration_s, bool loop) {
   return fmt::format("{}, {:.4g} s{}", name, duration_s, loop ? ", loops" : "");
@@ -151,14 +121,14 @@ void addRecording(const Recording& recording, Facts& facts) {
   facts.add("state_hash", fmt::format("{:016x}", recording.state_hash));
 }
 
-bool isCharacter(const std::string& path) {
+bool isDocument(const std::string& path) {
   return endingOf(path) == ".json";
 }
 
 // How a motion capture file fits a character's or a bare file's rig.
 void describeMap(const InfoOptions& options, Facts& facts) {
   std::shared_ptr<const RiggedModel> rig;
-  if (isCharacter(options.file)) {
+  if (isDocument(options.file)) {
     const CharacterDef def = readCharacterFile(options.file).def;
     if (def.rig) rig = def.rig->model;
   } else {
@@ -182,13 +152,21 @@ void describeMap(const InfoOptions& options, Facts& facts) {
 void describeFile(const InfoOptions& options, Facts& facts) {
   facts.add("file", options.file);
   if (!options.motion.empty()) return describeMap(options, facts);
-  if (isCharacter(options.file)) return addCharacter(loadCharacter(options.file), facts);
+  if (isDocument(options.file) && isSceneFile(options.file))
+    return addScene(loadStage(options.file), facts);
+  if (isDocument(options.file)) return addCharacter(loadCharacter(options.file), facts);
   if (endingOf(options.file) != ".fcache") {
     const RiggedModel rig = readRiggedModel(options.file);
     addRig(rig, facts);
     return addRigMotions(rig, facts);
   }
-  const Cache cache = readCache(options.file);
+  const std::string bytes = readCacheBytes(options.file);
+  if (isSceneCache(bytes)) {
+    const SceneCache cache = parseSceneCache(bytes, options.file);
+    addScene(cache.stage, facts);
+    return addPerformance(cache.recording, facts);
+  }
+  const Cache cache = parseCache(bytes, options.file);
   addCharacter(Character(cache.def), facts);
   addRecording(cache.recording, facts);
 }
@@ -230,8 +208,10 @@ void addInfo(CLI::App& program, Console& console) {
   CLI::App& command =
       *program.add_subcommand("info", "Tell what is in a file, or about the program");
   const auto options = std::make_shared<InfoOptions>();
-  CLI::Option* file = command.add_option("FILE", options->file,
-                                         "A *.fascia.json or *.fcache file, or a rig: .glb, .gltf");
+  CLI::Option* file =
+      command.add_option("FILE", options->file,
+                         "A *.fascia.json or *.fcache file of a character or scene, "
+                         "or a rig: .glb, .gltf");
   file->type_name("");
   command
       .add_option("--motion", options->motion,

@@ -14,6 +14,7 @@ constexpr const char* kFooter = R"(Examples:
   fascia check examples/penguin.fascia.json
   fascia bake examples/penguin.fascia.json -o penguin.glb
   fascia render examples/penguin.fascia.json -o penguin.mp4
+  fascia render examples/sky-hook.fascia.json -o sky-hook.mp4
 
 Your own rigged character comes alive in two steps:
   fascia flesh fox.glb -o fox.fascia.json
@@ -45,8 +46,10 @@ int run(CLI::App& program, fascia::Console& console, int argc, char** argv) {
 int main(int argc, char** argv) {
   fascia::watchInterrupts();
   fascia::Console console;
-  CLI::App program("Layered elastic characters: a skeleton, flesh on it, and a skin that lives.",
-                   "fascia");
+  CLI::App program(
+      "Layered elastic characters: a skeleton, flesh on it, and a skin that lives; and scenes of "
+      "elastic bodies around them.",
+      "fascia");
   program.footer(kFooter);
   program.set_version_flag("--version", "fascia " FASCIA_VERSION);
   program.require_subcommand(0, 1);  // none is refused below: an unknown one then gets named

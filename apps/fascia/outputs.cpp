@@ -64,7 +64,7 @@ void checkOverwriting(const std::vector<std::string>& inputs,
       Issue issue;
       issue.where.file = file;
       issue.message =
-          input ? "is read for this bake, and would be overwritten" : "would be written twice";
+          input ? "is read for this, and would be overwritten" : "would be written twice";
       issue.hint = "choose another name";
       throw Error(std::move(issue));
     }

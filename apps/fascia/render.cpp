@@ -79,6 +79,7 @@ void shootVideo(Film& film, Size size, const RenderOptions& options, const Conso
 
 void render(RenderOptions& options, const Console& console) {
   checkFolders({options.output, options.stats});
+  checkOverwriting({options.input}, {options.output}, options.stats);
   const ThreadLimit threads(options.simulation.threads);
   const Size size = parseSize(options.size);
   const FilmLook look{.camera = options.camera,
@@ -134,7 +135,9 @@ void addPictureOptions(CLI::App& command, RenderOptions& options) {
 void addRender(CLI::App& program, Console& console) {
   CLI::App& command = *program.add_subcommand("render", "Draw a picture or a video");
   const auto options = std::make_shared<RenderOptions>();
-  command.add_option("INPUT", options->input, "A *.fascia.json or *.fcache file")
+  command
+      .add_option("INPUT", options->input,
+                  "A *.fascia.json or *.fcache file of a character or scene")
       ->required()
       ->type_name("");
   command.add_option("-o,--output", options->output, "File to write: .png or .mp4")

@@ -32,13 +32,15 @@ std::vector<std::string> integratorNames() {
 void SimulationOptions::addTo(CLI::App& command) {
   command
       .add_option("--motion", motion,
-                  "Motion to simulate (default: the first); a .bvh file is put onto the rig")
+                  "A character's motion (default: the first); a .bvh file is put onto the rig")
       ->type_name("NAME");
   command
       .add_option("--joint-map", joint_map,
                   "Which of the .bvh file's joints drive which of the rig's (default: guessed)")
       ->type_name("FILE");
-  command.add_option("--duration", duration_s, "How long to simulate (default: the motion's)")
+  command
+      .add_option("--duration", duration_s,
+                  "How long to simulate (default: the motion's or scene's)")
       ->type_name("SECONDS")
       ->check(numberIn(1e-3, 86400));
   command.add_option("--grid", grid, "Skin points around x along, such as 64x16")

@@ -20,7 +20,9 @@ SceneCache performScene(const std::string& input, const SimulationOptions& optio
                         std::optional<double> only_s, const Console& console) {
   Stage stage = prepareStage(input, options);
   StageRecordOptions record = stageRecordOptions(options);
-  if (only_s)
+  // Without a box to be seen the camera shows all that moves in the course of the performance.
+  const ViewDef& view = stage.def().view;
+  if (only_s && view.low_m != view.high_m)
     keepOnly(*only_s,
              record.frame_rate_hz > 0 ? record.frame_rate_hz : stage.def().simulation.frame_rate_hz,
              record);

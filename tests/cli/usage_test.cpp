@@ -29,7 +29,7 @@ TEST_F(Cli, BadUsageEndsWithTwoAndSaysWhatIsWrong) {
   const std::vector<Case> cases = {
       {{}, "A command is required"},
       {{"boil"}, "boil"},
-      {{"bake"}, "CHARACTER"},
+      {{"bake"}, "FILE"},
       {{"bake", "ball.fascia.json"}, "--output"},
       {{"bake", "ball.fascia.json", "-o", "a.obj"}, ".glb, .pc2, .mdd, .fcache"},
       {{"bake", "ball.fascia.json", "-o", "a.glb", "--grid", "64"}, "WIDTHxHEIGHT"},
