@@ -55,7 +55,7 @@ Form solidForm(const SceneBodyDef& def, const std::string& pointer, Diagnostics&
   const std::size_t before = diagnostics.errors().size();
   const Solid solid(def.solid, pointer, diagnostics);
   if (diagnostics.errors().size() > before) return {};
-  const Box box = solid.bounds();
+  const Box& box = solid.bounds();
   return {makeSolidSurface(solid, kSurfaceDetail), makeBasis(def.basis, 3, box),
           [&def, solid, box](MatterDetail detail) {
             return solidMatter(solid, def.density_kg_per_m3, cellSize(box.size()), detail);
