@@ -29,7 +29,6 @@ SkinDef skinFor(const RiggedModel& model) {
   skin.tissue.stiffness_N_per_m3 = 20000;
   skin.tissue.damping_Ns_per_m3 = 300;
   skin.tissue.carry = 0.75;
-  skin.tissue.keep_volume = 1;
   const double evening_m = 0.006 * size;
   const double stretch =
       std::clamp(skin.tissue.stiffness_N_per_m3 * evening_m * evening_m, 1e-3, 1e6);
@@ -38,8 +37,6 @@ SkinDef skinFor(const RiggedModel& model) {
   skin.material.prestretch = 1;
   skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
   skin.fat.compressible = 0.8;
-  skin.contact.self = true;
-  skin.contact.gap_m = std::clamp(0.0006 * size, 1e-6, 1.0);
   return skin;
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include <fascia/skin/skin.h>
+#include <fascia/skin/rigged_skin.h>
 
 namespace fascia::test {
 
@@ -58,7 +58,7 @@ struct MeshArm {
     addPart("bead", 0, 1);
     setSkin();
   }
-  // Like those that `fascia flesh` writes.
+  // Elastic skin on top of the pose function.
   void setSkin() {
     skinDef.tissue.stiffness_N_per_m3 = 16000;
     skinDef.tissue.damping_Ns_per_m3 = 100;
@@ -66,7 +66,7 @@ struct MeshArm {
     skinDef.material.shear_N_per_m = 1;
     skinDef.material.prestretch = 1;
     skinDef.fat.thickness_m = 0.05;
-    skinDef.fat.compressible = 0.8;
+    skinDef.pose.simulate = true;
   }
   std::uint32_t addPoint(const Vec3& p, const PointWeights& w, std::uint32_t component) {
     rig.points_m.push_back(p.cast<float>());

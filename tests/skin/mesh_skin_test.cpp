@@ -20,7 +20,7 @@ ArmRun::Move bend(const MeshArm& arm) {
     arm.valueOf(posture, MeshArm::fore, Dof::rz) = kPi / 2 * std::clamp(time_s, 0.0, 1.0);
   };
 }
-// Up and down five times a second, by 15 g at most.
+// Up and down five times a second.
 ArmRun::Move shake(const MeshArm& arm) {
   return [&arm](Posture& posture, double time_s) {
     arm.valueOf(posture, MeshArm::upper, Dof::ty) =
@@ -53,7 +53,7 @@ TEST(MeshSkin, RestsInItsRestShapeUnderGravity) {
   EXPECT_LT(farthestFromRest(arm, 0), 1e-4);
 }
 
-// The strands' ends lie higher than points may slide; at the elbow flesh is in their way.
+// The strands' ends lie higher than points may slide.
 TEST(MeshSkin, RestsInItsRestShapeOnSoftTissue) {
   MeshArm arm;
   arm.skinDef.tissue.stiffness_N_per_m3 = 2500;
@@ -77,12 +77,11 @@ TEST(MeshSkin, SagsWhenGravityChangesSoThatItIsReallyCarried) {
   EXPECT_GT(farthest, 5e-4);
 }
 
-TEST(MeshSkin, BendsWithoutLeavingItsFleshOrTearing) {
+TEST(MeshSkin, BendsWithoutTearing) {
   MeshArm arm;
   ASSERT_TRUE(arm.build());
   ArmRun run(arm, bend(arm));
   run.advance(75, [&] { ASSERT_TRUE(run.finite()); });
-  EXPECT_LT(run.stats.max_penetration_m, 1e-4);
   EXPECT_LT(run.stats.max_edge_stretch, 2.5);
   EXPECT_EQ(run.stats.repaired_points, 0u);
   // It went along: the wrist's points are where the forearm's frame carries them.
@@ -93,30 +92,8 @@ TEST(MeshSkin, BendsWithoutLeavingItsFleshOrTearing) {
   EXPECT_LT(nearest, 0.01);
 }
 
-TEST(MeshSkin, IsPushedOutByFleshThatSwells) {
-  MeshArm arm;
-  ASSERT_TRUE(arm.build());
-  const auto middle = [&](const ArmRun& run) {  // mean distance from the axis, half way down
-    double sum = 0;
-    int count = 0;
-    for (std::size_t k = 0; k < arm.skin->pointCount() - 6; ++k) {
-      if (std::abs(arm.skin->restPosition().x[k] - 0.45) > 0.03) continue;
-      sum += std::hypot(run.place(k).y(), run.place(k).z());
-      ++count;
-    }
-    return sum / count;
-  };
-  ArmRun run(arm, stand);
-  EXPECT_NEAR(middle(run), MeshArm::kRadius_m, 1e-3);
-  run.overrides = {{arm.flesh.find("fore"), 0, 0.07, 0}};
-  run.advance(30);
-  EXPECT_LT(run.stats.max_penetration_m, 1e-4);
-  EXPECT_GT(middle(run), 0.07);
-}
-
 TEST(MeshSkin, IsTheSameOnAnyNumberOfThreads) {
   MeshArm arm(96, 64);  // more points than one task takes
-  arm.skinDef.contact.self = true;
   ASSERT_TRUE(arm.build());
   ASSERT_GT(arm.skin->pointCount(), 4096u);
   const auto hashOn = [&](int threads) {
@@ -216,42 +193,6 @@ TEST(MeshSkin, IsCarriedByItsJointsAloneWithoutFlesh) {
   EXPECT_EQ(fixedCount(arm), arm.rig.points_m.size());
 }
 
-TEST(MeshSkin, IgnoresFleshOfJointsThatDoNotMoveIt) {
-  MeshArm arm;
-  ASSERT_TRUE(arm.build());
-  // The ball comes down through the forearm, or stays away.
-  const auto hashWith = [&](double depth_m) {
-    ArmRun run(arm, [&, depth_m](Posture& posture, double time_s) {
-      bend(arm)(posture, 0.2 * time_s);
-      arm.valueOf(posture, MeshArm::other, Dof::tx) = 0.45;
-      arm.valueOf(posture, MeshArm::other, Dof::ty) = -depth_m * std::clamp(2 * time_s, 0.0, 1.0);
-    });
-    run.advance(40);
-    return run.hash();
-  };
-  EXPECT_EQ(hashWith(2), hashWith(0));
-}
-
-TEST(MeshSkin, IsPushedByTheSameFleshOnAJointThatMovesIt) {
-  MeshArm arm;
-  for (PointWeights& w : arm.rig.weights) {
-    if (w.joint[0] != MeshArm::fore || w.weight[0] < 1) continue;
-    w.joint[1] = MeshArm::other;
-    w.weight[0] = 0.9f, w.weight[1] = 0.1f;
-  }
-  ASSERT_TRUE(arm.build());
-  // Just into the mesh from above: less than what points yield to.
-  const auto highestAt = [&](double depth_m) {
-    ArmRun run(arm, [&](Posture& posture, double) {
-      arm.valueOf(posture, MeshArm::other, Dof::tx) = 0.45;
-      arm.valueOf(posture, MeshArm::other, Dof::ty) = -depth_m;
-    });
-    run.advance(30);
-    return run.stats.max_penetration_m;
-  };
-  EXPECT_LT(highestAt(1.9), 1e-4);
-}
-
 TEST(MeshSkin, SlidesOnlySoFarHoweverHardItIsShaken) {
   MeshArm arm;
   ASSERT_TRUE(arm.build());
@@ -268,7 +209,7 @@ TEST(MeshSkin, SlidesOnlySoFarHoweverHardItIsShaken) {
     }
   });
   EXPECT_GT(farthest, 0.99);  // the limit is reached
-  EXPECT_LT(farthest, 1.2);   // flesh pushes a little farther
+  EXPECT_LT(farthest, 1.2);
   EXPECT_LT(run.stats.max_edge_stretch, 3);
   EXPECT_EQ(run.stats.repaired_points, 0u);
 }
@@ -286,10 +227,104 @@ TEST(MeshSkin, JumpsWithABodyThatIsTeleported) {
   run.advance(5, [&] { ASSERT_TRUE(run.finite()); });
   EXPECT_EQ(run.stats.repaired_points, arm.skin->pointCount());
   EXPECT_LT(run.stats.max_edge_stretch, 1.5);
-  EXPECT_LT(run.stats.max_penetration_m, 1e-4);
   Box box;
   for (std::size_t k = 0; k < arm.skin->pointCount(); ++k) box.add(run.place(k));
   EXPECT_GT(box.low.x(), 4);
+}
+
+// --- Not simulated: the pose function alone.
+
+MeshArm posedArm() {
+  MeshArm arm;
+  arm.skinDef.pose.simulate = false;
+  EXPECT_TRUE(arm.build());
+  return arm;
+}
+
+TEST(PosedSkin, IsWhereItsPoseFunctionHasItAndNothingElse) {
+  MeshArm arm;
+  arm.skinDef.pose.simulate = false;
+  arm.skinDef.pose.jiggle = 0;
+  ASSERT_TRUE(arm.build());
+  ASSERT_FALSE(arm.skin->isSimulated());
+  ArmRun run(arm, bend(arm));
+  run.advance(40);
+  CarryScratch scratch;
+  VectorArray placed = run.state.position;
+  arm.skin->placeAll(run.at(40 * ArmRun::kFrame_s), scratch, placed);
+  EXPECT_EQ(placed.x, run.state.position.x);
+  EXPECT_EQ(placed.y, run.state.position.y);
+  EXPECT_EQ(run.stats.repaired_points, 0u);
+}
+
+TEST(PosedSkin, SwingsBehindAShakeByItsDial) {
+  const auto swing = [&](double dial) {
+    MeshArm arm;
+    arm.skinDef.pose.simulate = false;
+    arm.skinDef.pose.jiggle = dial;
+    EXPECT_TRUE(arm.build());
+    ArmRun run(arm, shake(arm));
+    CarryScratch scratch;
+    VectorArray placed = run.state.position;
+    double most = 0;
+    for (int f = 1; f <= 40; ++f) {
+      run.advance(1);
+      arm.skin->placeAll(run.at(f * ArmRun::kFrame_s), scratch, placed);
+      for (std::size_t k = 0; k < arm.skin->pointCount(); ++k)
+        most = std::max<double>(most, std::abs(placed.y[k] - run.state.position.y[k]));
+    }
+    return most;
+  };
+  EXPECT_EQ(swing(0), 0);
+  EXPECT_GT(swing(0.25), 0.002);
+  EXPECT_GT(swing(0.75), 1.5 * swing(0.25));
+}
+
+TEST(PosedSkin, StartsItsJiggleAnewAfterAJump) {
+  const MeshArm arm = posedArm();
+  ArmRun run(arm, [&](Posture& posture, double time_s) {
+    arm.valueOf(posture, MeshArm::upper, Dof::tx) = time_s > 5.5 * ArmRun::kFrame_s ? 5 : 0;
+  });
+  run.advance(5);
+  run.advance(5, [&] {
+    ASSERT_TRUE(run.finite());
+    Box box;
+    for (std::size_t k = 0; k < arm.skin->pointCount(); ++k) box.add(run.place(k));
+    EXPECT_LT(box.size().x(), MeshArm::kLength_m + 1e-4);
+  });
+}
+
+TEST(PosedSkin, DialsDifferByRegionJointAndPoint) {
+  const auto jiggleOf = [](MeshArm& arm) {
+    arm.skinDef.pose.simulate = false;
+    EXPECT_TRUE(arm.build());
+    return arm.skin->rigged()->skin->jiggle().nodeCount();
+  };
+  MeshArm all, upper, none, painted;
+  const std::size_t everywhere = jiggleOf(all);
+  SkinRegionDef region;
+  region.name = "still";
+  region.joint = "fore";
+  region.edits = {{SkinQuantity::jiggle, SkinRegionDef::Edit::Mode::set, 0}};
+  upper.skinDef.regions = {region};
+  const std::size_t half = jiggleOf(upper);
+  EXPECT_GT(half, 0u);
+  EXPECT_LT(half, everywhere);
+  none.skinDef.pose.jiggle = 0;
+  EXPECT_EQ(jiggleOf(none), 0u);
+  painted.skinDef.points.emplace().jiggle.assign(painted.rig.points_m.size(), 0.f);
+  EXPECT_EQ(jiggleOf(painted), 0u);
+}
+
+TEST(PosedSkin, NamesAJointThatTheRigLacks) {
+  MeshArm arm;
+  SkinRegionDef region;
+  region.name = "still";
+  region.joint = "tail";
+  arm.skinDef.regions = {region};
+  EXPECT_FALSE(arm.build());
+  ASSERT_EQ(arm.diagnostics.errors().size(), 1u);
+  EXPECT_EQ(arm.diagnostics.errors()[0].where.pointer, "/skin/regions/0/joint");
 }
 
 void expectError(MeshArm& arm, const std::string& pointer, const std::string& what) {

@@ -159,6 +159,7 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
   if (options.step_s >= 0) def_.simulation.step_s = options.step_s;
   if (def_.skin && options.columns > 0) def_.skin->columns = options.columns;
   if (def_.skin && options.rows > 0) def_.skin->rows = options.rows;
+  if (def_.skin && options.jiggle >= 0) def_.skin->pose.jiggle = options.jiggle;
 
   Diagnostics diagnostics;
   skeleton_ = Skeleton(def_.skeleton, "/skeleton", diagnostics);
@@ -280,7 +281,9 @@ CharacterState initialState(const Character& character, int motion) {
     FrozenPoses frozen(pose);
     SkinStats ignored;
     const double frame = 1.0 / 60;
-    const int frames = static_cast<int>(std::ceil(character.def().simulation.settle_s / frame));
+    const double settle_s =
+        character.skin()->isSimulated() ? character.def().simulation.settle_s : 0;
+    const int frames = static_cast<int>(std::ceil(settle_s / frame));
     for (int i = 0; i < frames; ++i)
       advanceSkin(*character.skin(), frozen, i * frame, (i + 1) * frame, state.skin,
                   state.workspace, ignored);

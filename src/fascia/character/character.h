@@ -18,6 +18,7 @@ struct BuildOptions {
   std::string integrator;     // empty = as in the file
   double step_s = -1;         // negative = as in the file
   double interval_s = 0;      // see SkinSettings; 0 = the usual one (references want it short)
+  double jiggle = -1;         // of an imported mesh, in [0, 1]; negative = as in the file
 };
 
 // A constant, validated character: skeleton, flesh, skin and motions ready to run.

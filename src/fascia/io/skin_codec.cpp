@@ -31,7 +31,11 @@ CodecPtr<SkinQuantity> quantityCodec() {
                    {Q::fat, "fat"},
                    {Q::tissue_stiffness, "tissue_stiffness"},
                    {Q::tissue_damping, "tissue_damping"},
-                   {Q::tissue_rest_length, "tissue_rest_length"}});
+                   {Q::tissue_rest_length, "tissue_rest_length"},
+                   {Q::jiggle, "jiggle"},
+                   {Q::muscle, "muscle"},
+                   {Q::volume, "volume"},
+                   {Q::tightness, "tightness"}});
 }
 
 CodecPtr<SkinEndDef> endCodec() {
@@ -93,12 +97,25 @@ CodecPtr<SkinTissueDef> tissueCodec() {
       .field("carry", &T::carry, numbers({0, 1}),
              "share of the flesh's changes of velocity that the skin takes over at once: 0 shakes "
              "like jelly, 1 not at all")
-      .field(
-          "keep_volume", &T::keep_volume, numbers({0, 1}),
-          "On imported meshes: share of what a bending joint would lose of its flesh that bulges "
-          "out around it")
       .field("rest_length_m", &T::rest_length_m, optionally(numbers({0, 1})),
              "None: the length at attachment");
+  return codec;
+}
+
+CodecPtr<SkinPoseDef> poseCodec() {
+  using P = SkinPoseDef;
+  auto codec = std::make_shared<ObjectCodec<P>>("How the rig's mesh follows its joints.");
+  codec
+      ->field("jiggle", &P::jiggle, numbers({0, 1}),
+              "Flesh that moves by itself: 0 none, 0.5 as flesh is, 1 jelly")
+      .field("muscle", &P::muscle, numbers({0, 1}),
+             "Flexors that swell in a bend: 0 none, 0.3 natural, 1 bodybuilder")
+      .field("volume", &P::volume, numbers({0, 1}),
+             "Share of what a bend takes from a joint that comes out around it")
+      .field("tightness", &P::tightness, numbers({0, 1}),
+             "How far the skin evens out: 0 slack, 1 taut")
+      .field("simulate", &P::simulate, booleans(),
+             "Beyond the pose: elastic skin of the material and tissue here hangs on it");
   return codec;
 }
 
@@ -122,6 +139,7 @@ class RegionCodec final : public ObjectCodec<SkinRegionDef> {
     using R = SkinRegionDef;
     field("name", &R::name, names(), "The region's name", Need::required);
     field("solid", &R::solid, texts(200), "Instead of u and v: all points anchored to this solid");
+    field("joint", &R::joint, texts(200), "Instead, on a rig: by the weights of this joint");
     field("feather", &R::feather, numbers({0, 0.5}), "Width of the smooth border in u and v");
     field("edits", &R::edits, listOf<R::Edit>(editCodec(), kMaxListed), "What differs");
   }
@@ -189,7 +207,7 @@ CodecPtr<SkinPartDef> partCodec() {
   using Object = ObjectCodec<P>;
   auto codec = std::make_shared<Object>("What becomes of a piece of the rig's mesh.");
   codec->field("name", &P::name, names(), "Of the mesh or of its material", Object::Need::required)
-      .field("rigid", &P::rigid, booleans(), "Carried by its joints as it is, or elastic skin");
+      .field("rigid", &P::rigid, booleans(), "Carried by its joints as it is");
   return codec;
 }
 
@@ -202,6 +220,7 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
     field("material", &S::material, materialCodec(), "");
     field("fat", &S::fat, fatCodec(), "");
     field("tissue", &S::tissue, tissueCodec(), "");
+    field("pose", &S::pose, poseCodec(), "");
     field("cling", &S::cling, numbers({0, 1}),
           "How far the skin follows hollows: 0 spans them like a stocking, 1 fills every valley");
     field("texture", &S::texture, texts(1000),
@@ -216,8 +235,7 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
           "in the order of its points");
     field("contact", &S::contact, contactCodec(), "");
     field("parts", &S::parts, listOf(partCodec(), kMaxListed),
-          "Pieces of the rig's mesh; without a rule those with flesh beneath are elastic, others "
-          "(eyes, teeth) rigid");
+          "Pieces of the rig's mesh that are to stay as they are: armour, buckles");
   }
 
   Json write(const SkinDef& skin) const override {

@@ -10,7 +10,7 @@
 
 namespace fascia {
 
-// Contact of a skin whose points feel every solid. Works on blocks of points that lie together.
+// Contact of a skin with every solid. Works on blocks of points that lie together.
 class FleshContact final : public SkinContact {
  public:
   FleshContact() = default;

@@ -274,7 +274,7 @@ void GridSkinBuilder::applyEdits() {
   });
   for (const TissueAnchors::Anchor& a : skin_.anchors_.anchors())
     points[numbers[a.point]].solid = a.solid;
-  applySkinEdits(def_, base_, report_, points, true, skin_.rest_, skin_.quantities_);
+  applySkinEdits(def_, base_, report_, points, nullptr, skin_.rest_, skin_.quantities_);
 }
 
 void GridSkinBuilder::makeModel() {

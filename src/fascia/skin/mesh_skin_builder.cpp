@@ -6,6 +6,7 @@
 
 #include <fascia/skin/grid_skin_builder.h>
 #include <fascia/skin/mesh_topology.h>
+#include <fascia/skin/rigged_skin.h>
 
 namespace fascia {
 namespace {
@@ -16,9 +17,6 @@ namespace {
 constexpr double kStep_s = 1.0 / 480;
 // A joint with a smaller share of a point does not press on it.
 constexpr float kFeltWeight = 0.05f;
-// How far flesh may press a point away from where its joints carry it: so many times the fat that
-// lies there, and at least this share of the model's size.
-constexpr double kYieldOfFat = 1.5, kLeastYield = 0.004;
 // How far a point may slide from its anchor: so much of its fat, and this share of the model's
 // size.
 constexpr double kSlideOfFat = 0.6, kLeastSlide = 0.0015;
@@ -73,11 +71,10 @@ void MeshSkinBuilder::build() {
   measureFat();
   chooseFixed();
   orderPoints();
-  makeSense();
   makeRestShape();
   setQuantities();
   makeModel();
-  carryPoints();
+  makePoseSkin();
 }
 
 bool MeshSkinBuilder::checkDef() const {
@@ -110,15 +107,12 @@ bool MeshSkinBuilder::findJoints() {
   for (const RigJoint& j : rig_.joints) {
     const JointId id = report_.findJoint("", j.name);
     ok = ok && id.valid();
-    if (id.valid())
-      joints_.push_back({id.index(), j.parent, base_.posedSkeleton.joint_world[id.index()]});
+    if (id.valid()) joints_.push_back({id.index(), base_.posedSkeleton.joint_world[id.index()]});
   }
   return ok;
 }
 
-// The solids that a point feels: those of the joints that move it. Limbs of imported figures pass
-// through each other and through the body in many a clip; a point that had to leave every solid
-// that comes over it would be torn off its place. Other parts of the body are for self-contact.
+// The solids that lie beneath a point: those of the joints that move it.
 void MeshSkinBuilder::findFelt() {
   felt_.resize(rig_.points_m.size());
   if (base_.flesh.solidCount() == 0) return;  // all skin and bones: carried by joints alone
@@ -130,17 +124,35 @@ void MeshSkinBuilder::findFelt() {
   for (std::size_t p = 0; p < felt_.size(); ++p) {
     for (std::size_t i = 0; i < PointWeights::kMost; ++i) {
       if (rig_.weights[p].weight[i] < kFeltWeight) continue;
-      const JointCarrier::Joint& joint = joints_[rig_.weights[p].joint[i]];
-      const std::vector<SolidId>& solids = ofJoint[joint.skeletonJoint];
+      const std::size_t joint = joints_[rig_.weights[p].joint[i]].skeletonJoint;
+      const std::vector<SolidId>& solids = ofJoint[joint];
       felt_[p].insert(felt_[p].end(), solids.begin(), solids.end());
     }
     if (felt_[p].empty()) felt_[p].push_back(nearestFlesh(base_.posedFlesh, modelPoint(p)).solid);
   }
 }
 
-// Borders keep their places on the joints. Pieces by rule: what the file says, else small ones and
-// those without flesh beneath are rigid.
+// What is not simulated, if the rest is: borders, small pieces and those without flesh beneath. And
+// what rules make rigid.
 void MeshSkinBuilder::chooseFixed() {
+  fixed_.assign(rig_.points_m.size(), 0);
+  rigid_.assign(rig_.points_m.size(), 0);
+  if (def_.pose.simulate) fixLoosePieces();
+  for (const SkinPartDef& rule : def_.parts)
+    for (const RigPart& part : rig_.parts) {
+      const bool material =
+          part.material >= 0 &&
+          rig_.materials[static_cast<std::size_t>(part.material)].name == rule.name;
+      if (part.name != rule.name && !material) continue;
+      for (std::uint32_t v = 0; v < part.vertexCount; ++v) {
+        const std::uint32_t point = rig_.vertices[part.firstVertex + v].point;
+        rigid_[point] = rule.rigid ? 1 : 0;
+        if (def_.pose.simulate) fixed_[point] = rigid_[point];
+      }
+    }
+}
+
+void MeshSkinBuilder::fixLoosePieces() {
   fixed_ = borderPoints(rig_);
   std::vector<Box> boxes(rig_.componentCount);
   std::vector<std::size_t> points(rig_.componentCount), covered(rig_.componentCount);
@@ -155,15 +167,6 @@ void MeshSkinBuilder::chooseFixed() {
     const std::uint32_t c = rig_.component[p];
     if (boxes[c].size().norm() < small || 2 * covered[c] < points[c]) fixed_[p] = 1;
   }
-  for (const SkinPartDef& rule : def_.parts)
-    for (const RigPart& part : rig_.parts) {
-      const bool material =
-          part.material >= 0 &&
-          rig_.materials[static_cast<std::size_t>(part.material)].name == rule.name;
-      if (part.name != rule.name && !material) continue;
-      for (std::uint32_t v = 0; v < part.vertexCount; ++v)
-        fixed_[rig_.vertices[part.firstVertex + v].point] = rule.rigid ? 1 : 0;
-    }
 }
 
 void MeshSkinBuilder::orderPoints() {
@@ -176,24 +179,7 @@ void MeshSkinBuilder::orderPoints() {
   storageOf_.resize(order_.size());
   for (std::size_t k = 0; k < order_.size(); ++k)
     storageOf_[order_[k]] = static_cast<std::uint32_t>(k);
-  for (std::size_t k = 0; k < elasticCount_; k += PointBlock::kCapacity)
-    skin_.blocks_.push_back({k, static_cast<std::uint32_t>(std::min<std::size_t>(
-                                    PointBlock::kCapacity, elasticCount_ - k))});
   for (std::size_t k = elasticCount_; k < order_.size(); ++k) skin_.fixedPoints_.push_back(k);
-}
-
-void MeshSkinBuilder::makeSense() {
-  const double leastYield_m = kLeastYield * rig_.size_m();
-  std::vector<FleshSense::Feeling> feelings;
-  FloatArray yield_m(elasticCount_);
-  for (std::size_t k = 0; k < elasticCount_; ++k) {
-    yield_m[k] = static_cast<float>(std::max(leastYield_m, kYieldOfFat * double{gap_[order_[k]]}));
-    const bool shared = rig_.weights[order_[k]].weight[0] < 1 - kFeltWeight;
-    for (const SolidId solid : felt_[order_[k]])
-      feelings.push_back({static_cast<std::uint32_t>(k), solid, shared});
-  }
-  skin_.sense_ = std::make_shared<FleshSense>(std::move(feelings), base_.flesh.solidCount(),
-                                              std::move(yield_m));
 }
 
 void MeshSkinBuilder::makeRestShape() {
@@ -224,7 +210,7 @@ TriangleMembrane MeshSkinBuilder::makeMembrane() const {
     if (fixed_[t[0]] && fixed_[t[1]] && fixed_[t[2]]) continue;
     triangles.push_back({storageOf_[t[0]], storageOf_[t[1]], storageOf_[t[2]]});
     // u runs around the limb, as on a grid: across the way from the joint to the triangle's flesh.
-    const JointCarrier::Joint& joint = joints_[rig_.weights[t[0]].joint[0]];
+    const Joint& joint = joints_[rig_.weights[t[0]].joint[0]];
     material.u.push_back(joint.rest_world.rotation.col(1).cast<float>());
   }
   const SkinQuantities& q = skin_.quantities_;
@@ -247,12 +233,6 @@ void MeshSkinBuilder::makeModel() {
       makePointModel({skin_.quantities_, membrane.pointAreas(), membrane.stiffnessBound(),
                       1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(order_.size()),
                       points, skin_.fixedPoints_, elastic});
-  // What contact keeps: what pressing leaves of the fat, but never more than there is at rest.
-  const auto kept = static_cast<float>(1 - def_.fat.compressible);
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const float natural = gap_[order_[k]];
-    skin_.points_.fat[k] = natural > 0 ? std::min(kept * skin_.points_.fat[k], natural) : natural;
-  }
   skin_.points_.carry = static_cast<float>(def_.tissue.carry);
   skin_.points_.slideLimit.resize(elasticCount_);
   for (std::size_t k = 0; k < elasticCount_; ++k) {
@@ -272,42 +252,57 @@ void MeshSkinBuilder::makeModel() {
       std::make_shared<MeshTopology>(order_.size(), std::move(membrane), std::move(drawn));
 }
 
-void MeshSkinBuilder::carryPoints() {
+// The pose function, on points in storage order. Fat that was put on or taken away is in its rest
+// shape.
+void MeshSkinBuilder::makePoseSkin() {
   const std::vector<Vec3> normals = pointNormals();
   const SkinQuantities& q = skin_.quantities_;
-  std::vector<JointCarrier::Point> all, inner,
-      fixed;  // inner: the strands' ends, and what is fixed
-  for (std::size_t k = 0; k < order_.size(); ++k) {
+  const std::size_t count = order_.size();
+  std::vector<Eigen::Vector3f> rest;
+  std::vector<PointWeights> weights;
+  PoseDials dials;
+  for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t p = order_[k];
-    JointCarrier::Point point{k, modelPoint(p), rig_.weights[p]};
-    // Fat that was put on or taken away moves the skin with it.
-    point.rest_world += double{q[SkinQuantity::fat][k] - naturalFat_[k]} * normals[p];
-    all.push_back(point);
-    if (k >= elasticCount_)
-      fixed.push_back(point);
-    else
-      point.rest_world -= sag(k);
-    inner.push_back(point);
+    const double fat = double{q[SkinQuantity::fat][k] - naturalFat_[k]};
+    rest.push_back((modelPoint(p) + fat * normals[p]).cast<float>());
+    weights.push_back(rig_.weights[p]);
+    dials.rigid.push_back(rigid_[p]);
   }
-  skin_.allByJoints_ = JointCarrier(joints_, all);
-  skin_.anchorsByJoints_ = JointCarrier(joints_, std::span(inner).first(elasticCount_));
-  skin_.fixedByJoints_ = JointCarrier(joints_, fixed);
-  if (def_.tissue.keep_volume > 0) {
-    skin_.jointVolume_ = JointVolume(joints_, inner, storedTriangles(), placed(inner));
-    skin_.keptVolume_ = static_cast<float>(def_.tissue.keep_volume);
-  }
-  if (def_.contact.self)
-    skin_.creases_ = std::make_shared<CreaseModel>(prepareCreases(joints_, all, elasticCount_));
-  if (def_.fat.bulk_Pa > 0) layFat(placed(all), placed(inner));
-}
+  const auto listOf = [&](SkinQuantity quantity) {
+    return std::vector<float>(q[quantity].begin(),
+                              q[quantity].begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  dials.jiggle = listOf(SkinQuantity::jiggle);
+  dials.muscle = listOf(SkinQuantity::muscle);
+  dials.volume = listOf(SkinQuantity::volume);
+  dials.tightness = listOf(SkinQuantity::tightness);
 
-VectorArray MeshSkinBuilder::placed(const std::vector<JointCarrier::Point>& points) const {
-  VectorArray out = skin_.rest_;
-  for (const JointCarrier::Point& p : points) {
-    const Eigen::Vector3f at = p.rest_world.cast<float>();
-    out.x[p.point] = at.x(), out.y[p.point] = at.y(), out.z[p.point] = at.z();
+  auto rigged = std::make_shared<RiggedSkin>();
+  std::vector<RigJoint> joints = rig_.joints;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    joints[j].rest_world = joints_[j].rest_world;
+    rigged->joints.push_back({joints_[j].skeletonJoint, joints_[j].rest_world.inverse()});
   }
-  return out;
+  rigged->skin =
+      std::make_shared<PoseSkin>(PoseSource{rest, weights, storedTriangles(), joints}, dials);
+  rigged->fleshSolids = base_.flesh.solidCount();
+  skin_.simulated_ = def_.pose.simulate;
+  VectorArray skin = skin_.rest_, anchors = skin_.rest_;
+  skin_.sag_ = VectorArray(skin_.rest_.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 s = k < elasticCount_ ? sag(k) : Vec3::Zero();
+    skin_.sag_.x[k] = static_cast<float>(s.x());
+    skin_.sag_.y[k] = static_cast<float>(s.y());
+    skin_.sag_.z[k] = static_cast<float>(s.z());
+    skin.x[k] = rest[k].x(), skin.y[k] = rest[k].y(), skin.z[k] = rest[k].z();
+    anchors.x[k] = skin.x[k] - skin_.sag_.x[k];
+    anchors.y[k] = skin.y[k] - skin_.sag_.y[k];
+    anchors.z[k] = skin.z[k] - skin_.sag_.z[k];
+  }
+  rigged->soft =
+      SoftRide(base_.flesh, base_.posedFlesh, base_.posedSkeleton.joint_world, skin, count);
+  skin_.rigged_ = std::move(rigged);
+  if (def_.fat.bulk_Pa > 0 && def_.pose.simulate) layFat(skin, anchors);
 }
 
 std::vector<TriangleMembrane::Corners> MeshSkinBuilder::storedTriangles() const {

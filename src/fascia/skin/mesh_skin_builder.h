@@ -30,13 +30,12 @@ class MeshSkinBuilder {
   void measureFat();
   void chooseFixed();
   void orderPoints();
-  void makeSense();
   void makeRestShape();
   void setQuantities();
   void makeModel();
-  void carryPoints();
+  void makePoseSkin();
+  void fixLoosePieces();
   void layFat(const VectorArray& skin, const VectorArray& anchors);
-  VectorArray placed(const std::vector<JointCarrier::Point>& points) const;  // the rest elsewhere
   std::vector<TriangleMembrane::Corners> storedTriangles() const;
   TriangleMembrane makeMembrane() const;
   Vec3 modelPoint(std::size_t p) const;
@@ -49,13 +48,18 @@ class MeshSkinBuilder {
   const RiggedModel& rig_;
   SkinReport report_;
 
-  std::vector<JointCarrier::Joint> joints_;
+  struct Joint {
+    std::size_t skeletonJoint;
+    Transform rest_world;  // of the skeleton's joint
+  };
+  std::vector<Joint> joints_;  // of the rig
   // Per point of the model:
-  std::vector<std::vector<SolidId>> felt_;  // solids that press on it
+  std::vector<std::vector<SolidId>> felt_;  // solids beneath it
   std::vector<float> gap_;                  // from the nearest of them, m
   std::vector<SolidId> solid_;              // that one
   std::vector<char> covered_;               // whether it counts as flesh beneath
-  std::vector<char> fixed_;                 // carried by joints, not simulated
+  std::vector<char> fixed_;                 // never simulated
+  std::vector<char> rigid_;                 // carried by its joints as it is
   std::vector<std::uint32_t> storageOf_;
   std::vector<std::uint32_t> order_;  // model point per storage index
   std::size_t elasticCount_ = 0;      // the first so many in storage are simulated

@@ -119,8 +119,9 @@ void MeshSkinBuilder::setQuantities() {
     }
   std::vector<EditPoint> points;
   for (std::size_t k = 0; k < order_.size(); ++k)
-    points.push_back({k, 0, 0, covered_[order_[k]] ? solid_[order_[k]] : SolidId()});
-  applySkinEdits(def_, base_, report_, points, false, skin_.rest_, q);
+    points.push_back(
+        {k, 0, 0, covered_[order_[k]] ? solid_[order_[k]] : SolidId(), &rig_.weights[order_[k]]});
+  applySkinEdits(def_, base_, report_, points, &rig_, skin_.rest_, q);
 }
 
 }  // namespace fascia

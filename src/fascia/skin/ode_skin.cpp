@@ -181,7 +181,6 @@ void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<con
 double OdeSkin::violation(double t_s, std::span<const double> r) {
   load(r, position_);
   const Field& field = *poses_->at(t_s).field;
-  contact_->findYielding(field, skin_.points(), state_->surroundings.anchor);
   return contact_->deepest(field, skin_.points(), position_);
 }
 
@@ -191,7 +190,6 @@ double OdeSkin::project(double t_s, std::span<double> r, std::span<double> v) {
   positionBefore_ = position_;
   velocityBefore_ = velocity_;
   const Field& field = *poses_->at(t_s).field;
-  contact_->findYielding(field, skin_.points(), state_->surroundings.anchor);
   const SkinContact::Result result = contact_->project(
       field, skin_.points(), 0.f, static_cast<float>(skin_.contactResponse().restitution),
       position_, velocity_, state_->surroundings);

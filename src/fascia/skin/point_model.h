@@ -25,8 +25,6 @@ struct PointSurroundings {
   // A half space per point that the flesh fills: n·r < offset is inside. n = 0: nothing near.
   VectorArray normal, fleshVelocity;
   FloatArray offset;  // at the interval's start; it moves with n·fleshVelocity
-  // Where the points' joints alone would carry them at the interval's start; empty: not known.
-  VectorArray carried;
 
   void resize(std::size_t n) {
     for (VectorArray* a : {&anchor, &anchorVelocity, &normal, &fleshVelocity}) a->resize(n);

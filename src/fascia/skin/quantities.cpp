@@ -16,6 +16,10 @@ constexpr QuantityInfo kInfos[kSkinQuantities] = {
     {Q::tissue_stiffness, "tissue_stiffness", "N/m³", 0, 1e8},
     {Q::tissue_damping, "tissue_damping", "N s/m³", 0, 1e6},
     {Q::tissue_rest_length, "tissue_rest_length", "m", 0, 1},
+    {Q::jiggle, "jiggle", "", 0, 1},
+    {Q::muscle, "muscle", "", 0, 1},
+    {Q::volume, "volume", "", 0, 1},
+    {Q::tightness, "tightness", "", 0, 1},
 };
 
 }  // namespace
@@ -58,6 +62,14 @@ double uniformValue(const SkinDef& def, SkinQuantity quantity) {
       return def.tissue.damping_Ns_per_m3;
     case Q::tissue_rest_length:
       return def.tissue.rest_length_m.value_or(0);
+    case Q::jiggle:
+      return def.pose.jiggle;
+    case Q::muscle:
+      return def.pose.muscle;
+    case Q::volume:
+      return def.pose.volume;
+    case Q::tightness:
+      return def.pose.tightness;
   }
   return 0;
 }
@@ -85,9 +97,17 @@ std::vector<float>& pointValues(SkinPointsDef& p, SkinQuantity quantity) {
     case Q::tissue_damping:
       return p.tissue_damping;
     case Q::tissue_rest_length:
+      return p.tissue_rest_length;
+    case Q::jiggle:
+      return p.jiggle;
+    case Q::muscle:
+      return p.muscle;
+    case Q::volume:
+      return p.volume;
+    case Q::tightness:
       break;
   }
-  return p.tissue_rest_length;
+  return p.tightness;
 }
 
 const std::vector<float>& pointValues(const SkinPointsDef& points, SkinQuantity quantity) {

@@ -9,7 +9,7 @@
 
 namespace fascia {
 
-inline constexpr std::size_t kSkinQuantities = 11;
+inline constexpr std::size_t kSkinQuantities = 15;
 
 struct QuantityInfo {
   SkinQuantity quantity;

@@ -11,18 +11,15 @@
 #include <fascia/base/hash.h>
 #include <fascia/flesh/flesh.h>
 #include <fascia/geometry/triangle_mesh.h>
+#include <fascia/pose/jiggle_state.h>
 #include <fascia/rig/rigged_model.h>
 #include <fascia/skin/fat_pressure.h>
-#include <fascia/skin/flesh_sense.h>
 #include <fascia/skin/grid_topology.h>
-#include <fascia/skin/joint_carrier.h>
-#include <fascia/skin/joint_volume.h>
 #include <fascia/skin/leapfrog.h>
 #include <fascia/skin/point_kernels.h>
 #include <fascia/skin/point_model.h>
 #include <fascia/skin/quantities.h>
 #include <fascia/skin/self_contact.h>
-#include <fascia/skin/self_contact_creases.h>
 #include <fascia/skin/skin_def.h>
 #include <fascia/skin/tissue.h>
 
@@ -60,12 +57,9 @@ struct SkinPose {
   std::span<const Transform> joints;
 };
 
-// Scratch memory for carrying points with a pose.
-struct CarryScratch {
-  VectorArray points;
-  std::vector<JointCarrier::Motion> motion;
-  JointVolume::Scratch volume;
-};
+// See rigged_skin.h.
+struct CarryScratch;
+struct RiggedSkin;
 
 // A constant elastic skin: geometry of rest, material, anchors. Spec L2–L6, L14, L21.
 class Skin {
@@ -93,15 +87,18 @@ class Skin {
   const VectorArray& restPosition() const { return rest_; }
   const SkinQuantities& quantities() const { return quantities_; }
   std::span<const PointBlock> blocks() const { return blocks_; }
-  const FleshSense* sense() const { return sense_.get(); }  // nullptr: points feel all solids
   double defaultStep_s() const { return defaultStep_s_; }
   // The same skin at a resolution whose waves a step of about a millisecond resolves; nullptr if
   // this one's does. See leapfrog.h.
   const Skin* coarse() const { return coarse_.get(); }
   double size_m() const { return size_m_; }  // diagonal of the rest shape's box
   const SelfContactModel* selfContact() const { return selfContact_.get(); }  // may be nullptr
-  const CreaseModel* creases() const { return creases_.get(); }               // may be nullptr
   const FatPressureModel* fatPressure() const { return fatPressure_.get(); }  // may be nullptr
+
+  // Of an imported mesh only.
+  const RiggedSkin* rigged() const { return rigged_.get(); }
+  // Whether it is stepped through time; else it follows from a pose, but for its jiggle.
+  bool isSimulated() const { return simulated_; }
 
   // The inner ends of a grid's strands, in its solids' matter.
   const TissueAnchors& anchors() const { return anchors_; }
@@ -115,14 +112,13 @@ class Skin {
 
   // Where a pose carries things. Each writes the entries of the points meant, and no others.
   void placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
-  // Moves anchors so that joints keep their volume, right after they were placed. Also writes
-  // entries of fixed points.
-  void keepVolume(const SkinPose& pose, CarryScratch& scratch, VectorArray& anchor) const;
+  // Of a mesh: as the call of another of these with the same pose and scratch has found it.
   void placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
   void placeAll(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
   std::span<const std::size_t> fixedPoints() const { return fixedPoints_; }  // storage indices
 
  private:
+  void placeRigged(const SkinPose& pose, CarryScratch& scratch) const;
   friend class GridSkinBuilder;
   friend class MeshSkinBuilder;
   Skin() = default;
@@ -135,18 +131,16 @@ class Skin {
   PointModel points_;
   ContactResponse contactResponse_;
   std::vector<PointBlock> blocks_;
-  std::shared_ptr<const FleshSense> sense_;
   double defaultStep_s_ = 0, size_m_ = 0;
   std::vector<std::size_t> fixedPoints_;
   std::shared_ptr<const SelfContactModel> selfContact_;
-  std::shared_ptr<const CreaseModel> creases_;
   std::shared_ptr<const FatPressureModel> fatPressure_;
-  // A grid's points are carried by solids and joints, a mesh's by its joints' weights.
+  // A grid's points are carried by solids and joints, a mesh's by its pose function.
   TissueAnchors anchors_, carriers_;
   std::vector<Fixed> fixed_;
-  JointCarrier anchorsByJoints_, fixedByJoints_, allByJoints_;
-  JointVolume jointVolume_;
-  float keptVolume_ = 0;  // share of it that bending joints do not lose
+  std::shared_ptr<const RiggedSkin> rigged_;
+  bool simulated_ = true;
+  VectorArray sag_;  // of a simulated mesh: how far a point's weight stretches its strand
   std::shared_ptr<const Skin> coarse_;
 };
 
@@ -157,6 +151,7 @@ struct SkinState {
   VectorArray carrierVelocity;     // of the coarse surface under each point (see leapfrog.h), m/s
   std::vector<SkinState> coarse;   // the coarse skin's state, or none
   std::vector<Transform> joints;   // the pose of the last interval's end
+  JiggleState jiggle;              // of an imported mesh that is not simulated
   float maxSpeed_m_per_s = 0;      // at the end of the last interval
   bool ready = false;              // surroundings belong to this state's time
   bool starting = false;           // moves with its flesh from the first interval on, unlagging
@@ -181,7 +176,14 @@ class SkinPoseSource {
   virtual SkinPose at(double time_s) = 0;
 };
 
-class SkinStepper;
+// Steps one skin; owns what memory that takes.
+class SkinRun {
+ public:
+  virtual ~SkinRun() = default;
+  virtual const Skin& skin() const = 0;
+  virtual void advance(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
+                       SkinStats& stats) = 0;
+};
 
 // Scratch memory that belongs to one run; copying a state does not need it.
 class SkinWorkspace {
@@ -190,10 +192,10 @@ class SkinWorkspace {
   ~SkinWorkspace();
   SkinWorkspace(const SkinWorkspace&);  // copies start empty
   SkinWorkspace& operator=(const SkinWorkspace&);
-  SkinStepper& stepper(const Skin& skin);  // made on first use and for another skin
+  SkinRun& run(const Skin& skin);  // made on first use and for another skin
 
  private:
-  std::unique_ptr<SkinStepper> stepper_;
+  std::unique_ptr<SkinRun> run_;
 };
 
 // The rest shape carried along by the flesh into a posture: where a simulation starts, and where

@@ -14,7 +14,7 @@ namespace fascia {
 class Skin;
 
 // Non-penetration of skin and flesh (spec L10, L11): every point keeps the distance of its fat τ
-// from every solid that it feels. The paper tests the point moved inward along the skin's normal,
+// from every solid. The paper tests the point moved inward along the skin's normal,
 // g(r − τ n) ≥ 0; as a distance changes at most as fast as its point moves, d(r) ≥ τ implies that
 // for every n, also where the skin folds and its normal is doubtful. Knows nothing of how points
 // are connected.
@@ -39,12 +39,6 @@ class SkinContact {
   virtual float deepest(const Field& field, const PointModel& points,
                         const VectorArray& position) const = 0;
 
-  // Keeps the strands' inner ends out of the flesh, as far as it does not yield (see FleshSense).
-  virtual void projectAnchors(const Field&, const PointModel&, VectorArray& /*anchor*/) {}
-  // Lets points yield to flesh as far as their strands' inner ends lie in it, in the calls that
-  // follow.
-  virtual void findYielding(const Field&, const PointModel&, const VectorArray& /*anchor*/) {}
-
  protected:
   static constexpr int kPasses = 16;  // more than creases of three solids need
   // A point that was pushed farther than this may have been pushed into another solid.
@@ -62,7 +56,7 @@ class SkinContact {
   }
 };
 
-// The kind that suits the skin.
+// Of a grid: with all flesh. A mesh is carried out of what it touches (see pose_skin.h).
 std::unique_ptr<SkinContact> makeContact(const Skin& skin);
 
 }  // namespace fascia

@@ -38,8 +38,6 @@ struct SkinTissueDef {
   std::optional<double> rest_length_m;  // [0, 1]; none = the length at attachment
   double carry = 0;  // [0, 1]; share of its anchor's changes of velocity that a point takes over at
                      // once: 0 shakes like jelly, 1 not at all
-  double keep_volume = 0;  // [0, 1]; on imported meshes: share of what a bending joint would lose
-                           // of its flesh that bulges out around it
 };
 
 // One end of the tube: a small ring of points fixed to a joint.
@@ -63,7 +61,22 @@ enum class SkinQuantity {
   fat,
   tissue_stiffness,
   tissue_damping,
-  tissue_rest_length
+  tissue_rest_length,
+  jiggle,  // from here on: of an imported mesh, see SkinPoseDef
+  muscle,
+  volume,
+  tightness
+};
+
+// How an imported mesh follows its joints (pose_skin.h); each in [0, 1].
+struct SkinPoseDef {
+  double jiggle = 0.5;     // flesh that moves by itself: 0 none, 0.5 as flesh is, 1 jelly
+  double muscle = 0.3;     // flexors that swell in a bend: 0 none, 0.3 natural, 1 bodybuilder
+  double volume = 0.85;    // share of what a bend takes from a joint that comes out around it
+  double tightness = 0.5;  // how far the skin evens out: 0 slack, 1 taut
+  // Beyond the pose: elastic skin with the material and tissue below is simulated, its strands'
+  // inner ends where the pose function has the mesh.
+  bool simulate = false;
 };
 
 // A named part of the skin in material coordinates, and what differs there.
@@ -77,6 +90,7 @@ struct SkinRegionDef {
   double u_min = 0, u_max = 1;  // around, in [0, 1]; u_min > u_max wraps around
   double v_min = 0, v_max = 1;  // along, from the bottom end (0) to the top end (1)
   std::string solid;            // if given: instead, all points anchored to this solid
+  std::string joint;            // of an imported mesh, if given: instead, by the joint's weights
   double feather = 0.05;        // [0, 0.5]; width of the smooth border in u and v
   std::vector<Edit> edits;
 };
@@ -103,7 +117,7 @@ struct SkinAnchorDef {
 struct SkinPointsDef {
   int columns = 0, rows = 0;
   std::vector<float> density, stretch_u, stretch_v, shear, bending, drag, prestretch, fat,
-      tissue_stiffness, tissue_damping, tissue_rest_length;
+      tissue_stiffness, tissue_damping, tissue_rest_length, jiggle, muscle, volume, tightness;
   std::vector<int> anchor_solid;                      // -1: no tissue
   std::vector<std::array<float, 3>> anchor;           // material coordinates on that solid
   std::vector<std::array<float, 3>> rest_position_m;  // world, rest posture
@@ -115,11 +129,10 @@ struct SkinContactDef {
   double gap_m = 0.002;  // (0, 1]; kept between two sheets of skin
 };
 
-// What becomes of a piece of an imported mesh, named by its part or material. Without a rule pieces
-// that hang together with flesh beneath are elastic, others (eyes, teeth, buckles) are rigid.
+// What becomes of a piece of an imported mesh, named by its part or material.
 struct SkinPartDef {
   std::string name;
-  bool rigid = true;  // carried by its joints as it is; false: elastic skin
+  bool rigid = true;  // carried by its joints as it is: armour, buckles, a robot
 };
 
 struct SkinDef {
@@ -128,6 +141,7 @@ struct SkinDef {
   SkinMaterialDef material;
   SkinFatDef fat;
   SkinTissueDef tissue;
+  SkinPoseDef pose;    // of an imported mesh
   double cling = 0.3;  // [0, 1]; shrink-wrap: 0 spans hollows like a stocking, 1 fills every valley
   std::string texture;  // PNG or JPEG beside the character file; empty = color
   std::array<float, 3> color{0.86f, 0.66f, 0.56f};  // sRGB

@@ -20,10 +20,22 @@ double inRange(double x, double low, double high, double feather, bool periodic)
   return t * t * (3 - 2 * t);
 }
 
-float shareOf(const SkinRegionDef& region, SolidId solid, const EditPoint& p) {
+float shareOf(const SkinRegionDef& region, SolidId solid, int joint, const EditPoint& p) {
+  if (joint >= 0) {
+    float share = 0;
+    for (std::size_t k = 0; k < PointWeights::kMost; ++k)
+      if (p.weights->joint[k] == joint) share += p.weights->weight[k];
+    return share;
+  }
   if (!region.solid.empty()) return p.solid == solid ? 1.f : 0.f;
   return static_cast<float>(inRange(p.u, region.u_min, region.u_max, region.feather, true) *
                             inRange(p.v, region.v_min, region.v_max, region.feather, false));
+}
+
+int findRigJoint(const RiggedModel& rig, const std::string& name) {
+  for (std::size_t j = 0; j < rig.joints.size(); ++j)
+    if (rig.joints[j].name == name) return static_cast<int>(j);
+  return -1;
 }
 
 double edited(const SkinRegionDef::Edit& edit, double old) {
@@ -41,17 +53,27 @@ double edited(const SkinRegionDef::Edit& edit, double old) {
 }  // namespace
 
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
-                    std::span<const EditPoint> points, bool hasCoordinates, const VectorArray& rest,
-                    SkinQuantities& quantities) {
+                    std::span<const EditPoint> points, const RiggedModel* rig,
+                    const VectorArray& rest, SkinQuantities& quantities) {
   for (std::size_t n = 0; n < def.regions.size(); ++n) {
     const SkinRegionDef& region = def.regions[n];
     const std::string where = "/regions/" + std::to_string(n);
-    if (region.solid.empty() && !hasCoordinates) {
-      report.error(where + "/solid", "found a region without a solid",
-                   "an imported mesh has no u and v along and around: name a solid");
+    int joint = -1;
+    if (!region.joint.empty()) {
+      joint = rig ? findRigJoint(*rig, region.joint) : -1;
+      if (joint < 0) {
+        report.error(where + "/joint",
+                     rig ? "found no joint '" + region.joint + "' in the rig"
+                         : "a grid has no weights: found a region by joint",
+                     rig ? "'fascia info' lists them" : "name a solid, or give u and v");
+        continue;
+      }
+    } else if (region.solid.empty() && rig) {
+      report.error(where, "found a region without a joint or a solid",
+                   "an imported mesh has no u and v along and around: name a joint");
       continue;
     }
-    if (region.solid.empty() && !(region.v_min <= region.v_max))
+    if (!rig && region.solid.empty() && !(region.v_min <= region.v_max))
       report.error(where + "/v", "found the larger number first",
                    "only u goes around; v runs upwards");
     SolidId solid;
@@ -61,7 +83,7 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
       for (const EditPoint& p : points) {
         const double old = values[p.point];
         values[p.point] =
-            static_cast<float>(old + shareOf(region, solid, p) * (edited(edit, old) - old));
+            static_cast<float>(old + shareOf(region, solid, joint, p) * (edited(edit, old) - old));
       }
     }
   }

@@ -28,7 +28,11 @@ void SkinReport::checkValues(const SkinDef& def) const {
       {SkinQuantity::fat, "/fat/thickness_m"},
       {SkinQuantity::tissue_stiffness, "/tissue/stiffness_N_per_m3"},
       {SkinQuantity::tissue_damping, "/tissue/damping_Ns_per_m3"},
-      {SkinQuantity::tissue_rest_length, "/tissue/rest_length_m"}};
+      {SkinQuantity::tissue_rest_length, "/tissue/rest_length_m"},
+      {SkinQuantity::jiggle, "/pose/jiggle"},
+      {SkinQuantity::muscle, "/pose/muscle"},
+      {SkinQuantity::volume, "/pose/volume"},
+      {SkinQuantity::tightness, "/pose/tightness"}};
   for (const auto& [quantity, where] : kWhere)
     checkRange(where, uniformValue(def, quantity), info(quantity).min, info(quantity).max);
   checkRange("/material/max_stretch", def.material.max_stretch, 1.01, 4);
@@ -38,7 +42,6 @@ void SkinReport::checkValues(const SkinDef& def) const {
   for (std::size_t i = 0; i < def.brushes.size(); ++i)
     checkRange("/brushes/" + std::to_string(i) + "/radius_m", def.brushes[i].radius_m, 1e-6, 1e6);
   checkRange("/tissue/carry", def.tissue.carry, 0, 1);
-  checkRange("/tissue/keep_volume", def.tissue.keep_volume, 0, 1);
   checkRange("/fat/compressible", def.fat.compressible, 0, 0.95);
   checkRange("/fat/bulk_Pa", def.fat.bulk_Pa, 0, 1e5);
   checkRange("/contact/gap_m", def.contact.gap_m, 1e-9, 1);

@@ -44,15 +44,16 @@ struct NearestFlesh {
 NearestFlesh nearestFlesh(const Field& field, const Vec3& p, std::span<const SolidId> solids);
 NearestFlesh nearestFlesh(const Field& field, const Vec3& p);  // of all
 
-// Regions and brushes on the points of a skin.
+// Regions and brushes on the points of a skin. A rig has weights, a grid (rig = nullptr) u and v.
 struct EditPoint {
-  std::size_t point;  // storage index
-  double u, v;        // material coordinates; not read if the skin has none
-  SolidId solid;      // that the point is tied to; invalid: none
+  std::size_t point;                      // storage index
+  double u, v;                            // material coordinates; not read if the skin has none
+  SolidId solid;                          // that the point is tied to; invalid: none
+  const PointWeights* weights = nullptr;  // of an imported mesh, by joints of the rig
 };
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
-                    std::span<const EditPoint> points, bool hasCoordinates, const VectorArray& rest,
-                    SkinQuantities& quantities);
+                    std::span<const EditPoint> points, const RiggedModel* rig,
+                    const VectorArray& rest, SkinQuantities& quantities);
 
 // Fills what stepping needs to know of the points from their quantities and areas (m²).
 // `tied`: storage indices of the points with a tissue strand.

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include <fascia/skin/felt_contact.h>
 #include <fascia/skin/flesh_contact.h>
 #include <fascia/skin/resample.h>
+#include <fascia/skin/rigged_skin.h>
 #include <fascia/skin/skin.h>
 
 namespace fascia {
@@ -12,23 +12,46 @@ void SkinState::addTo(StateHash& hash, const SkinTopology& topology) const {
     for (const FloatArray* axis : {&a->x, &a->y, &a->z})
       for (const SkinTopology::Range& r : topology.ranges())
         hash.add(axis->data() + r.first, r.count * sizeof(float));
+  for (const FrameArray* a : {&jiggle.offset, &jiggle.velocity})
+    hash.add(a->data(), a->size() * sizeof(Vector4f));
+}
+
+namespace {
+
+constexpr FloatArray VectorArray::*kAxes[3] = {&VectorArray::x, &VectorArray::y, &VectorArray::z};
+
+// A pose's joints as the rig's: rest -> now.
+void rigMotion(const RiggedSkin& rigged, const SkinPose& pose, std::vector<Transform>& motion) {
+  motion.clear();
+  for (const RiggedSkin::Joint& j : rigged.joints)
+    motion.push_back(pose.joints[j.skeletonJoint] * j.inverseRest);
+}
+
+}  // namespace
+
+void evaluateRigged(const RiggedSkin& rigged, const SkinPose& pose, double dt_s,
+                    JiggleState* jiggle, CarryScratch& scratch, VectorArray& out) {
+  rigMotion(rigged, pose, scratch.motion);
+  PoseObstacles obstacles{pose.field, rigged.fleshSolids};
+  rigged.skin->evaluate(scratch.motion, {dt_s, jiggle, &obstacles}, scratch.pose, out);
+  rigged.soft.move(*pose.field, pose.joints, scratch.soft, out);
 }
 
 void Skin::placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
-  if (isGrid())
+  if (isGrid()) {
     anchors_.place(*pose.field, scratch.points, out);
-  else
-    anchorsByJoints_.place(pose.joints, scratch.motion, out);
-}
-
-void Skin::keepVolume(const SkinPose& pose, CarryScratch& scratch, VectorArray& anchor) const {
-  if (jointVolume_.empty()) return;
-  fixedByJoints_.place(pose.joints, scratch.motion, anchor);
-  jointVolume_.restore(keptVolume_, scratch.motion, scratch.volume, anchor);
+    return;
+  }
+  placeRigged(pose, scratch);
+  for (const auto axis : kAxes)
+    for (std::size_t k = 0; k < pointCount(); ++k)
+      (out.*axis)[k] = (scratch.points.*axis)[k] - (sag_.*axis)[k];
 }
 
 void Skin::placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
-  fixedByJoints_.place(pose.joints, scratch.motion, out);
+  if (!isGrid())
+    for (const std::size_t k : fixedPoints_)
+      for (const auto axis : kAxes) (out.*axis)[k] = (scratch.points.*axis)[k];
   for (const Fixed& f : fixed_) {
     const Vec3 p = pose.joints[f.joint.index()].point(f.position_joint);
     out.x[f.point] = static_cast<float>(p.x());
@@ -38,12 +61,20 @@ void Skin::placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& 
 }
 
 void Skin::placeAll(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
-  if (isGrid())
+  if (isGrid()) {
     carriers_.place(*pose.field, scratch.points, out);
-  else
-    allByJoints_.place(pose.joints, scratch.motion, out);
+  } else {
+    placeRigged(pose, scratch);
+    for (const auto axis : kAxes)
+      std::copy_n((scratch.points.*axis).begin(), pointCount(), (out.*axis).begin());
+  }
   placeFixed(pose, scratch, out);
   topology_->complete(out);
+}
+
+void Skin::placeRigged(const SkinPose& pose, CarryScratch& scratch) const {
+  scratch.points.resize(topology_->storage());
+  evaluateRigged(*rigged_, pose, 0, nullptr, scratch, scratch.points);
 }
 
 void carrySkin(const Skin& skin, const SkinPose& pose, SkinState& state) {
@@ -53,17 +84,16 @@ void carrySkin(const Skin& skin, const SkinPose& pose, SkinState& state) {
   state.velocity.resize(storage);
   state.velocity.fill(0.f);
   skin.placeAll(pose, scratch, state.position);
+  state.jiggle = {};
 }
 
 std::unique_ptr<SkinContact> makeContact(const Skin& skin) {
-  if (skin.sense()) return std::make_unique<FeltContact>(*skin.sense());
   return std::make_unique<FleshContact>(
       std::vector<PointBlock>(skin.blocks().begin(), skin.blocks().end()));
 }
 
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats) {
   const std::unique_ptr<SkinContact> contact = makeContact(skin);
-  contact->findYielding(*pose.field, skin.points(), state.surroundings.anchor);
   stats.max_penetration_m = std::max<double>(
       stats.max_penetration_m, contact->deepest(*pose.field, skin.points(), state.position));
   stats.max_edge_stretch =

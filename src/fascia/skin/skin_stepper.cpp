@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fascia/skin/ode_skin.h>
+#include <fascia/skin/posed_skin_run.h>
 
 namespace fascia {
 namespace {
@@ -23,10 +24,6 @@ constexpr double kJump = 0.2;
 constexpr float kSelfReach = 0.002f;
 // Points that may slide only so far need no wider one, however hard a body is shaken.
 constexpr float kSlidingReach = 0.02f;
-// How long an anchor takes, mostly, to where flesh leads it aside that bulges at a bend or that a
-// clip drives over it: that comes and goes within a frame or two, and skin that followed at once
-// would tremble.
-constexpr double kAnchorSlide_s = 0.03;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
 
@@ -111,8 +108,7 @@ void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
   const std::size_t storage = skin_->topology().storage();
   state.velocity.resize(storage);
   state.surroundings.resize(storage);
-  placeAnchors(pose, state.surroundings.anchor);
-  state.surroundings.carried = nextCarried_;
+  skin_->placeAnchors(pose, scratch_, state.surroundings.anchor);
   SkinStats ignored;
   settle(pose, skin_->settings().interval_s, state, ignored);
   if (coarse_) {
@@ -168,32 +164,6 @@ void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinStat
   watch.lap(stats.other_s);
 }
 
-// Where the strands' inner ends are. On imported figures joints carry some of them into flesh: they
-// stay on its surface then, so that no strand pulls the skin against flesh without end.
-void SkinStepper::placeAnchors(const SkinPose& pose, VectorArray& anchor) {
-  skin_->placeAnchors(pose, scratch_, anchor);
-  if (!skin_->sense()) return;
-  nextCarried_ = anchor;
-  skin_->keepVolume(pose, scratch_, anchor);
-  if (skin_->creases()) meetInCreases(*skin_->creases(), pose.joints, anchor);
-  contact_->projectAnchors(*pose.field, skin_->points(), anchor);
-}
-
-// Brings the next anchors from where they were, beside where joints carry them, nearer to where
-// flesh leads them.
-void SkinStepper::slideAnchors(double duration_s, const PointSurroundings& around) {
-  const auto share = static_cast<float>(1 - std::exp(-duration_s / kAnchorSlide_s));
-  for (const auto axis : kAxes) {
-    const FloatArray &anchor = around.anchor.*axis, &carried = around.carried.*axis,
-                     &nextCarried = nextCarried_.*axis;
-    FloatArray& next = nextAnchor_.*axis;
-    for (std::size_t k = 0; k < next.size(); ++k) {
-      const float stayed = nextCarried[k] + (anchor[k] - carried[k]);
-      next[k] = stayed + share * (next[k] - stayed);
-    }
-  }
-}
-
 // The share of its anchor's changes of velocity that each point takes over.
 const FloatArray& SkinStepper::carried(const SkinState& state) {
   if (!state.starting) return coefficients_.carried;
@@ -205,8 +175,7 @@ const FloatArray& SkinStepper::carried(const SkinState& state) {
 void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& state,
                            SkinStats& stats) {
   PointSurroundings& around = state.surroundings;
-  placeAnchors(pose, nextAnchor_);
-  if (skin_->sense()) slideAnchors(duration_s, around);
+  skin_->placeAnchors(pose, scratch_, nextAnchor_);
   const auto rate = static_cast<float>(1 / duration_s);
   const float way = followAnchors(nextAnchor_, rate, ode_ || coarse_ ? nullptr : &carried(state),
                                   around, state.velocity);
@@ -216,7 +185,6 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
     // A posture jump: the skin jumps with the flesh and starts anew from there.
     carrySkin(*skin_, pose, state);
     around.anchor = nextAnchor_;
-    around.carried = nextCarried_;
     around.anchorVelocity.fill(0.f);
     around.normal.fill(0.f);
     state.carrierVelocity.fill(0.f);
@@ -262,11 +230,9 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   if (state.ready) {
     takeFixed(state.position);
     std::swap(state.surroundings.anchor, nextAnchor_);
-    std::swap(state.surroundings.carried, nextCarried_);
   } else {
     skin_->placeFixed(pose, scratch_, state.position);
   }
-  contact_->findYielding(*pose.field, skin_->points(), state.surroundings.anchor);
   if (!skin_->points().slideLimit.empty()) limitSlide(state);
   skin_->topology().complete(state.position);
   // Skin against itself comes before the flesh, which has the last word.
@@ -352,14 +318,18 @@ SkinWorkspace& SkinWorkspace::operator=(const SkinWorkspace&) {
   return *this;
 }
 
-SkinStepper& SkinWorkspace::stepper(const Skin& skin) {
-  if (!stepper_ || &stepper_->skin() != &skin) stepper_ = std::make_unique<SkinStepper>(skin);
-  return *stepper_;
+SkinRun& SkinWorkspace::run(const Skin& skin) {
+  if (run_ && &run_->skin() == &skin) return *run_;
+  if (skin.isSimulated())
+    run_ = std::make_unique<SkinStepper>(skin);
+  else
+    run_ = std::make_unique<PosedSkinRun>(skin);
+  return *run_;
 }
 
 void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double end_s,
                  SkinState& state, SkinWorkspace& workspace, SkinStats& stats) {
-  workspace.stepper(skin).advance(poses, start_s, end_s, state, stats);
+  workspace.run(skin).advance(poses, start_s, end_s, state, stats);
 }
 
 }  // namespace fascia

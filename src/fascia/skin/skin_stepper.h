@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <fascia/skin/prolongation.h>
+#include <fascia/skin/rigged_skin.h>
 #include <fascia/skin/skin.h>
 #include <fascia/skin/skin_contact.h>
 
@@ -12,14 +13,14 @@ namespace fascia {
 class OdeSkin;
 
 // Steps one skin: the stabilised leapfrog, or any integrator of the solver library.
-class SkinStepper {
+class SkinStepper final : public SkinRun {
  public:
   explicit SkinStepper(const Skin& skin);
-  ~SkinStepper();
+  ~SkinStepper() override;
 
-  const Skin& skin() const { return *skin_; }
+  const Skin& skin() const override { return *skin_; }
   void advance(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
-               SkinStats& stats);
+               SkinStats& stats) override;
 
  private:
   int intervalCount(const SkinPose& end, double span_s, const SkinState& state) const;
@@ -28,8 +29,6 @@ class SkinStepper {
   void odeInterval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
                    SkinStats& stats);
   void rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
-  void placeAnchors(const SkinPose& pose, VectorArray& anchor);
-  void slideAnchors(double duration_s, const PointSurroundings& around);
   const FloatArray& carried(const SkinState& state);
   int chooseStep(double duration_s);
   void leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats);
@@ -45,7 +44,7 @@ class SkinStepper {
   std::unique_ptr<SkinContact> contact_;
   SelfContact selfContact_;
   FatPressure fatPressure_;
-  VectorArray nextAnchor_, nextCarried_, target_;
+  VectorArray nextAnchor_, target_;
   FloatArray wholly_;  // ones
   CarryScratch scratch_;
   std::unique_ptr<OdeSkin> ode_;

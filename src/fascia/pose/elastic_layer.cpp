@@ -1,0 +1,171 @@
+#include <fascia/pose/elastic_layer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include <fascia/base/parallel.h>
+
+namespace fascia {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kChunk = 512;
+// ℓ in local radii for tightness 0 and 1. Shorter than 0.25: folds cross again; longer than 0.8:
+// twisted limbs lose a third of their volume.
+constexpr float kLoose = 0.25f, kTight = 0.87f;
+// How many ℓ away from any blend of weights the skin still moves.
+constexpr float kFar = 2.5f;
+// A residual of less than this share of an edge is rounding, not bending.
+constexpr float kNoise = 2e-6f;
+
+// Whether the base pose can bend the skin at a point: several joints move it or its neighbours.
+bool isBlended(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
+               std::size_t i) {
+  if (source.weights[i].weight[1] > 0 && source.weights[i].weight[0] < 0.995f) return true;
+  for (const PoseMesh::Edge& e : mesh.around(i))
+    if (parts.home[e.to] != parts.home[i]) return true;
+  return false;
+}
+
+// Along edges from the nearest blended point.
+std::vector<float> wayFromBlends(const PoseSource& source, const PoseMesh& mesh,
+                                 const LimbParts& parts) {
+  using Entry = std::pair<float, std::uint32_t>;
+  std::vector<float> way(mesh.size(), std::numeric_limits<float>::max());
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  for (std::uint32_t i = 0; i < mesh.size(); ++i)
+    if (isBlended(source, mesh, parts, i)) queue.push({way[i] = 0, i});
+  while (!queue.empty()) {
+    const auto [so, i] = queue.top();
+    queue.pop();
+    if (so > way[i]) continue;
+    for (const PoseMesh::Edge& e : mesh.around(i)) {
+      const float further = so + (mesh.rest[i] - mesh.rest[e.to]).norm();
+      if (further < way[e.to]) queue.push({way[e.to] = further, e.to});
+    }
+  }
+  return way;
+}
+
+}  // namespace
+
+ElasticLayer::ElasticLayer(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
+                           std::span<const float> tightness, std::span<const char> rigid) {
+  std::vector<float> smoothing_m(mesh.size());
+  for (std::size_t i = 0; i < mesh.size(); ++i)
+    smoothing_m[i] = (kLoose + (kTight - kLoose) * tightness[i]) * parts.radius_m[i];
+  number(mesh, wayFromBlends(source, mesh, parts), smoothing_m, rigid);
+  storeEdges(mesh);
+  factorize(mesh, smoothing_m);
+}
+
+void ElasticLayer::number(const PoseMesh& mesh, std::span<const float> way,
+                          std::span<const float> smoothing_m, std::span<const char> rigid) {
+  bentOf_.assign(mesh.size(), kNone);
+  for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+    if (rigid[i] || way[i] >= kFar * smoothing_m[i] + 2 * mesh.edge_m[i]) continue;
+    bentOf_[i] = static_cast<std::uint32_t>(solved_.size());
+    solved_.push_back(i);
+  }
+  std::vector<std::uint32_t> all = solved_;
+  for (const std::uint32_t i : solved_)
+    for (const PoseMesh::Edge& e : mesh.around(i))
+      if (bentOf_[e.to] == kNone) {
+        bentOf_[e.to] = static_cast<std::uint32_t>(all.size());
+        all.push_back(e.to);
+      }
+  for (const std::uint32_t i : all) {
+    const float noise = kNoise * mesh.edge_m[i];
+    bent_.push_back({Vector4f::Zero(), i, 1 / mesh.area_m2[i], noise * noise});
+  }
+}
+
+void ElasticLayer::storeEdges(const PoseMesh& mesh) {
+  firstEdge_.push_back(0);
+  for (Point& p : bent_) {
+    for (const PoseMesh::Edge& e : mesh.around(p.point)) {
+      Edge edge{wide(e.weight * (mesh.rest[p.point] - mesh.rest[e.to])), e.to};
+      p.weightedSum += edge.weighted;
+      edge.weighted.w() = e.weight;
+      edges_.push_back(edge);
+    }
+    firstEdge_.push_back(static_cast<std::uint32_t>(edges_.size()));
+  }
+}
+
+// C M⁻¹ C + K of the solved points; others have u = 0.
+void ElasticLayer::factorize(const PoseMesh& mesh, std::span<const float> smoothing_m) {
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<std::pair<std::uint32_t, double>> row;
+  for (const Point& middle : bent_) {
+    row.clear();
+    double sum = 0;
+    for (const PoseMesh::Edge& e : mesh.around(middle.point)) {
+      sum += double{e.weight};
+      row.push_back({bentOf_[e.to], -double{e.weight}});
+    }
+    row.push_back({bentOf_[middle.point], sum});
+    std::erase_if(row, [&](const auto& entry) { return entry.first >= solved_.size(); });
+    for (const auto& [i, a] : row)
+      for (const auto& [j, b] : row)
+        if (i >= j)
+          entries.emplace_back(static_cast<int>(i), static_cast<int>(j),
+                               a * b * double{middle.inverseArea});
+  }
+  for (std::uint32_t k = 0; k < solved_.size(); ++k) {
+    const double l = double{smoothing_m[solved_[k]]};
+    entries.emplace_back(static_cast<int>(k), static_cast<int>(k),
+                         double{mesh.area_m2[solved_[k]]} / (l * l * l * l));
+  }
+  const auto n = static_cast<Eigen::Index>(solved_.size());
+  SparseMatrix matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  // Lengths of 1 mm make entries of 1e6 and more: equations in units of the mean diagonal.
+  if (!system_.factorize(matrix)) solved_.clear();
+}
+
+// The residuals e_i / A_i of bent points [begin, end).
+void ElasticLayer::bend(std::span<const WideRotation> rotation, std::span<const Vector4f> position,
+                        std::size_t begin, std::size_t end, FrameArray& residual) const {
+  for (std::size_t k = begin; k < end; ++k) {
+    const Point& p = bent_[k];
+    Vector4f turned = rotation[p.point] * p.weightedSum, apart = Vector4f::Zero();
+    const Vector4f& here = position[p.point];
+    for (std::uint32_t q = firstEdge_[k]; q < firstEdge_[k + 1]; ++q) {
+      const Edge& e = edges_[q];
+      turned += rotation[e.to] * e.weighted;
+      apart += e.weighted.w() * (here - position[e.to]);
+    }
+    const Vector4f bent = 0.5f * turned - apart;
+    residual[k] = bent.squaredNorm() > p.noise ? Vector4f(p.inverseArea * bent) : Vector4f::Zero();
+  }
+}
+
+void ElasticLayer::relax(std::span<const WideRotation> rotation, std::span<Vector4f> position,
+                         Scratch& scratch) const {
+  if (solved_.empty()) return;
+  scratch.residual.resize(bent_.size());
+  for (std::vector<float>* a : {&scratch.x, &scratch.y, &scratch.z}) a->resize(solved_.size());
+  parallelFor((bent_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    bend(rotation, position, kChunk * chunk, std::min(bent_.size(), kChunk * (chunk + 1)),
+         scratch.residual);
+  });
+  parallelFor((solved_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(solved_.size(), kChunk * (chunk + 1));
+    for (std::size_t k = kChunk * chunk; k < end; ++k) {
+      Vector4f sum = Vector4f::Zero();
+      for (std::uint32_t q = firstEdge_[k]; q < firstEdge_[k + 1]; ++q) {
+        const std::uint32_t to = bentOf_[edges_[q].to];
+        sum += edges_[q].weighted.w() * (scratch.residual[k] - scratch.residual[to]);
+      }
+      scratch.x[k] = sum.x(), scratch.y[k] = sum.y(), scratch.z[k] = sum.z();
+    }
+  });
+  system_.solve(scratch.x, scratch.y, scratch.z, scratch.solver);
+  for (std::size_t k = 0; k < solved_.size(); ++k)
+    position[solved_[k]] += Vector4f(scratch.x[k], scratch.y[k], scratch.z[k], 0);
+}
+
+}  // namespace fascia

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include <fascia/pose/limb_contact.h>
+
+namespace fascia {
+namespace {
+
+using Eigen::Vector3f;
+
+// Skin so far below its own limb's surface, in radii, is an inner layer (teeth, eyes) and meets
+// nobody.
+constexpr float kInner = 0.4f;
+constexpr float kNobody = 1e9f;
+constexpr std::size_t kClusterPoints = 32;
+
+// Halves along the longest side until a cluster is small.
+template <class Add>
+void divide(const PoseMesh& mesh, std::span<std::uint32_t> points, const Add& add) {
+  if (points.size() <= kClusterPoints) {
+    add(points);
+    return;
+  }
+  Box box;
+  for (const std::uint32_t i : points) box.add(mesh.rest[i].cast<double>());
+  Eigen::Index axis;
+  box.size().maxCoeff(&axis);
+  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+  std::nth_element(points.begin(), middle, points.end(), [&](std::uint32_t p, std::uint32_t q) {
+    const float a = mesh.rest[p][axis], b = mesh.rest[q][axis];
+    return a < b || (a == b && p < q);
+  });
+  divide(mesh, points.first(points.size() / 2), add);
+  divide(mesh, points.subspan(points.size() / 2), add);
+}
+
+}  // namespace
+
+LimbContact::LimbContact(const PoseSource& source, const PoseMesh& mesh,
+                         std::shared_ptr<const LimbParts> parts, std::span<const char> rigid)
+    : parts_(std::move(parts)), noise_m_(2e-6f * mesh.size_m) {
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    rest_.push_back(wide(mesh.rest[i]));
+    normal_.push_back(wide(mesh.normal[i]));
+  }
+  pairsOf_.resize(source.joints.size());
+  findPairs(source, mesh);
+  findClusters(mesh, rigid);
+  storeEdges(mesh);
+}
+
+void LimbContact::findPairs(const PoseSource& source, const PoseMesh& mesh) {
+  std::map<std::array<std::uint32_t, 2>, std::int32_t> found;
+  const auto count = static_cast<std::uint32_t>(source.joints.size());
+  for (std::uint32_t a = 0; a < count; ++a)
+    for (std::uint32_t b = 0; b < count; ++b) {
+      if (a == b || !parts_->part[a].exists() || !parts_->part[b].exists()) continue;
+      if (!parts_->meetInCrease(a, b)) continue;
+      if (addPair(source, mesh, a, b, true))
+        found[{a, b}] = static_cast<std::int32_t>(pairs_.size()) - 1;
+    }
+  for (Pair& pair : pairs_) {
+    const auto mirror = found.find({pair.b, pair.a});
+    if (mirror != found.end()) pair.mirror = mirror->second;
+  }
+}
+
+// False where the two overlap at rest too much to tell a touch from the rest shape.
+bool LimbContact::addPair(const PoseSource& source, const PoseMesh& mesh, std::uint32_t a,
+                          std::uint32_t b, bool crease) {
+  const LimbPart &own = parts_->part[a], &other = parts_->part[b];
+  std::vector<float> overlaps;
+  std::size_t clear = 0, bad = 0;
+  for (const std::uint32_t i : parts_->skin[a]) {
+    const float distance = other.distance(mesh.rest[i]);
+    const float overlap = distance < 0 ? std::max(0.f, parts_->own_m[i] - distance) : 0.f;
+    if (source.weights[i].weight[0] > 0.8f) {
+      ++clear;
+      if (overlap > 0.1f * other.meanRadius_m()) ++bad;
+    }
+    overlaps.push_back(parts_->own_m[i] < -kInner * own.meanRadius_m() ? kNobody : overlap);
+  }
+  if (clear == 0 || 10 * bad > clear) return false;
+  pairsOf_[a].push_back(static_cast<std::uint32_t>(pairs_.size()));
+  pairs_.push_back({a, b, -1, crease ? static_cast<std::int32_t>(std::max(a, b)) : -1,
+                    static_cast<std::uint32_t>(overlap_m_.size())});
+  overlap_m_.insert(overlap_m_.end(), overlaps.begin(), overlaps.end());
+  return true;
+}
+
+void LimbContact::findClusters(const PoseMesh& mesh, std::span<const char> rigid) {
+  clusterOf_.assign(mesh.size(), -1);
+  for (std::uint32_t a = 0; a < pairsOf_.size(); ++a) {
+    if (pairsOf_[a].empty()) continue;
+    std::vector<std::uint32_t> skin = parts_->skin[a];
+    std::erase_if(skin, [&](std::uint32_t i) { return rigid[i] != 0; });
+    divide(mesh, skin, [&](std::span<const std::uint32_t> points) {
+      for (const std::uint32_t i : points)
+        clusterOf_[i] = static_cast<std::int32_t>(clusters_.size());
+      clusters_.push_back({a, {points.begin(), points.end()}});
+    });
+  }
+}
+
+void LimbContact::storeEdges(const PoseMesh& mesh) {
+  firstEdge_.push_back(0);
+  for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+    for (const PoseMesh::Edge& e : mesh.around(i)) {
+      Vector4f weighted = wide(e.weight * (mesh.rest[i] - mesh.rest[e.to]));
+      weighted.w() = e.weight;
+      edges_.push_back({weighted, e.to});
+    }
+    firstEdge_.push_back(static_cast<std::uint32_t>(edges_.size()));
+  }
+}
+
+}  // namespace fascia
