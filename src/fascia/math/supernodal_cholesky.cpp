@@ -5,10 +5,11 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/OrderingMethods>
+#include <Eigen/Core>
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/cholesky/multifrontal.h>
+#include <fascia/math/cholesky/nested_dissection.h>
 #include <fascia/math/cholesky/panel_kernels.h>
 
 namespace fascia {
@@ -22,31 +23,17 @@ constexpr int floatsPerRow(int sides) {
   return sides == 1 ? 1 : 4;
 }
 
-std::vector<int> eliminationOrder(const SparseMatrix& a) {
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  Eigen::AMDOrdering<int>()(a.selfadjointView<Eigen::Lower>(), order);
-  return {order.indices().begin(), order.indices().end()};
-}
-
 // Writes the panel of a supernode (see PanelView); false if an entry is not finite in float.
 bool storePanel(const Eigen::Ref<const Eigen::MatrixXd>& triangle,
-                const Eigen::Ref<const Eigen::MatrixXd>& below, float* values) {
+                const Eigen::Ref<const Eigen::MatrixXd>& below, std::span<float> values) {
   const Eigen::Index width = triangle.rows(), height = width + below.rows();
   Eigen::MatrixXd stored = Eigen::MatrixXd::Zero(height, width);
   stored.topRows(width).setIdentity();
   triangle.triangularView<Eigen::Lower>().solveInPlace(stored.topRows(width));
   stored.bottomRows(below.rows()).noalias() = -below * stored.topRows(width);
-  bool finite = true;
-  for (Eigen::Index row = 0, tile = 0; row < height; row += cholesky::kTileRows, ++tile) {
-    const Eigen::Index columns = std::min(width, cholesky::kTileRows * (tile + 1));
-    for (Eigen::Index c = 0; c < columns; ++c)
-      for (Eigen::Index r = row; r < row + cholesky::kTileRows; ++r) {
-        const auto value = r < height ? static_cast<float>(stored(r, c)) : 0.0f;
-        finite = finite && std::isfinite(value);
-        *values++ = value;
-      }
-  }
-  return finite;
+  cholesky::packPanel(static_cast<int>(width), static_cast<int>(height), stored.data(),
+                      values.data());
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
 }
 
 }  // namespace
@@ -55,13 +42,16 @@ bool SupernodalCholesky::factorize(const SparseMatrix& a) {
   *this = {};
   assert(a.rows() == a.cols());
   if (a.rows() == 0) return true;
+  const cholesky::Graph graph = cholesky::graphOf(a);
   const cholesky::Supernodes supernodes =
-      cholesky::findSupernodes(cholesky::graphOf(a), eliminationOrder(a));
+      cholesky::findSupernodes(graph, cholesky::nestedDissection(graph));
   const cholesky::Tasks tasks = cholesky::splitIntoTasks(supernodes);
   layOut(supernodes, tasks);
   std::atomic<bool> finite = true;
   const cholesky::TakeColumns take = [&](std::size_t s, const auto& triangle, const auto& below) {
-    if (!storePanel(triangle, below, values_.data() + panels_[s].values)) finite = false;
+    const std::span<float> values(values_.data() + panels_[s].values,
+                                  values_.data() + panels_[s].end);
+    if (!storePanel(triangle, below, values)) finite = false;
   };
   if (cholesky::factorizeMultifrontal(a, supernodes, tasks, take) && finite) return true;
   *this = {};
@@ -79,6 +69,7 @@ void SupernodalCholesky::layOut(const cholesky::Supernodes& supernodes,
     panel.values = values;
     panel.rows = rows_.size();
     values += cholesky::panelSize(panel.width, panel.height);
+    panel.end = values;
     panelMemory_ = std::max(panelMemory_, cholesky::panelMemory(panel.height));
     for (int k = 0; k < node.width; ++k) rows_.push_back(node.first + k);
     rows_.insert(rows_.end(), node.below.begin(), node.below.end());
@@ -115,7 +106,8 @@ void SupernodalCholesky::layOutSubtree(const cholesky::Supernodes& supernodes, S
 
 cholesky::PanelView SupernodalCholesky::view(int panel) const {
   const Panel& p = panels_[at(panel)];
-  return {values_.data() + p.values, rows_.data() + p.rows, p.width, p.height};
+  return {values_.data() + p.values, values_.data() + p.end, rows_.data() + p.rows, p.width,
+          p.height};
 }
 
 namespace {

@@ -40,7 +40,7 @@ class SupernodalCholesky {
  private:
   // A supernode, see PanelView.
   struct Panel {
-    std::size_t values = 0, rows = 0;  // where they start
+    std::size_t values = 0, end = 0, rows = 0;  // where they are
     int width = 0, height = 0;
   };
   // Panels [first, end): a subtree whose columns and rows nobody else touches. What it subtracts

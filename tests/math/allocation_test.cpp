@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include <fascia/base/parallel.h>
 #include <fascia/math/ode/adaptive_stepper.h>
+#include <fascia/math/supernodal_cholesky.h>
 
 #include "ode_systems.h"
 #include "support/count_allocations.h"
@@ -38,6 +42,26 @@ TEST(AdaptiveStepper, AllocatesNothingAfterWarmUpInContactAndRepair) {
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(stepper.stats().rejected_contact, contactsBefore);
   EXPECT_GT(stepper.stats().repaired_coordinates, 0);
+}
+
+TEST(SupernodalCholesky, AllocatesNothingAfterTheFirstSolve) {
+  const ThreadLimit limit(1);
+  SparseMatrix a(3000, 3000);
+  for (int i = 0; i < 3000; ++i) {
+    a.insert(i, i) = 5;
+    if (i >= 50) a.insert(i, i - 50) = -1;
+    if (i % 50 > 0) a.insert(i, i - 1) = -1;
+  }
+  SupernodalCholesky factor;
+  SupernodalCholesky::Scratch scratch;
+  ASSERT_TRUE(factor.factorize(a));
+  std::vector<float> x(factor.size(), 1), y = x, z = x;
+  factor.solve(x, y, z, scratch);
+  const long before = allocations;
+  factor.solve(x, y, z, scratch);
+  factor.solve(x, scratch);
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(x[0], 0);
 }
 
 }  // namespace
