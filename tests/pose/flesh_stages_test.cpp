@@ -198,7 +198,9 @@ TEST(Dents, PropsPressTheSkinInAndItsSurroundingsFollow) {
     deepest = std::max(deepest, 0.05 - (p - Vec3(0.15, 0.08, 0)).norm());
     const double before = (plain[i].cast<double>() - Vec3(0.15, 0.08, 0)).norm();
     if (before > 0.052) around = std::max(around, double{(pressed[i] - plain[i]).norm()});
-    if (before > 0.15) EXPECT_EQ(pressed[i], plain[i]) << i;
+    if (before > 0.15) {
+      EXPECT_EQ(pressed[i], plain[i]) << i;
+    }
   }
   EXPECT_GT(farthest(plain, pressed), 0.015f);
   EXPECT_LT(deepest, 1e-6);

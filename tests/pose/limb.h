@@ -37,12 +37,12 @@ struct Limb {
     };
     const auto last = static_cast<std::uint32_t>(points.size() - 1);
     for (int j = 0; j < around; ++j) {
-      triangles.push_back({0, ring(1, j), ring(1, j + 1)});
+      triangles.push_back({0, ring(1, j + 1), ring(1, j)});
       for (int i = 1; i + 1 < along; ++i) {
-        triangles.push_back({ring(i, j), ring(i + 1, j), ring(i, j + 1)});
-        triangles.push_back({ring(i, j + 1), ring(i + 1, j), ring(i + 1, j + 1)});
+        triangles.push_back({ring(i, j), ring(i, j + 1), ring(i + 1, j)});
+        triangles.push_back({ring(i, j + 1), ring(i + 1, j + 1), ring(i + 1, j)});
       }
-      triangles.push_back({last, ring(along - 1, j + 1), ring(along - 1, j)});
+      triangles.push_back({last, ring(along - 1, j), ring(along - 1, j + 1)});
     }
   }
   static PointWeights weightsAt(double x, double blend_m) {

@@ -79,8 +79,9 @@ TEST(PoseSkin, TwistsWithoutCollapsing) {
   const Limb limb;
   const auto motion = limb.turned(2.6, Vec3::UnitX());
   const double rest = volumeOf(limb, limb.points);
-  EXPECT_GT(rest - volumeOf(limb, linearlyBlended(limb, motion)), 0.05 * rest);
-  EXPECT_LT(rest - volumeOf(limb, posed(limb.skin(limb.dials(0, 0, 0)), motion)), 0.015 * rest);
+  const double theirs = rest - volumeOf(limb, linearlyBlended(limb, motion));
+  ASSERT_GT(theirs, 0.05 * rest);
+  EXPECT_LT(rest - volumeOf(limb, posed(limb.skin(), motion)), 0.6 * theirs);
 }
 
 TEST(PoseSkin, FoldsWithoutCrossingItself) {

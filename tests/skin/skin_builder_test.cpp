@@ -81,7 +81,7 @@ TEST(TissueAnchors, MoveWithTheirJointAndStayOnTheSurface) {
 TEST(SkinRegion, SetsScalesAndAddsInsideAndFadesOverItsFeather) {
   Body body;
   const SkinQuantity fat = SkinQuantity::fat;
-  SkinRegionDef region{"belt", {}, {}, {}, {}, "", 0.1, {{fat, Mode::set, 0.05}}};
+  SkinRegionDef region{"belt", {}, {}, {}, {}, "", "", 0.1, {{fat, Mode::set, 0.05}}};
   region.u_min = 0, region.u_max = 1, region.v_min = 0.3, region.v_max = 0.6;
   body.skinDef.regions = {region};
   body.skinDef.rows = 41;

@@ -13,6 +13,7 @@ using Eigen::Vector3f;
 constexpr float kAround = 2.4f;  // how far around a joint, in its radii
 constexpr float kInside = 0.7f;  // how much more comes out on the flesh's side than evenly
 constexpr float kBlended = 4;
+constexpr float kStill = 0.2f, kTurned = 0.8f;  // rad
 constexpr float kMost = 0.3f;  // of a joint's volume that may come or go
 constexpr float kNothing = 1e-5f;
 constexpr float kSkinDepth = 0.35f;  // radii below its part's surface: no skin but what is inside
@@ -22,6 +23,12 @@ float weightOf(const PointWeights& w, int joint) {
   for (std::size_t k = 0; k < PointWeights::kMost; ++k)
     if (w.joint[k] == joint) sum += w.weight[k];
   return sum;
+}
+
+// 0 for joints that are as at rest, 1 where they bend or twist by more than a trifle.
+float turnGate(const Vector4f& a, const Vector4f& b) {
+  const float angle = 2 * std::acos(std::min(1.f, std::abs(a.dot(b))));
+  return smoothStep((angle - kStill) / (kTurned - kStill));
 }
 
 float volumeSeenFrom(const Vector4f& center,
@@ -145,14 +152,15 @@ JointVolume::JointVolume(const PoseSource& source, const PoseMesh& mesh, const L
     if (chosen[j]) joints_.push_back(std::move(all[j]));
 }
 
-void JointVolume::restore(std::span<const JointMotion> motion, std::span<const float> bend,
-                          std::span<const Vector4f> position, std::span<float> along) const {
+void JointVolume::restore(std::span<const JointMotion> motion, std::span<const Vector4f> position,
+                          std::span<float> along) const {
   for (const Joint& j : joints_) {
-    if (bend[j.joint] <= 0) continue;
     const JointMotion &parent = motion[j.parent], &own = motion[j.joint];
+    const float turned = turnGate(parent.turn, own.turn);
+    if (turned <= 0) continue;
     const float volume = volumeSeenFrom(own.point(j.center_m), j.triangles, position);
     const float lost =
-        bend[j.joint] * std::clamp(j.rest_m3 - volume, -kMost * j.rest_m3, kMost * j.rest_m3);
+        turned * std::clamp(j.rest_m3 - volume, -kMost * j.rest_m3, kMost * j.rest_m3);
     if (std::abs(lost) < kNothing * j.rest_m3) continue;
     // What is missing comes out on the inner side of the bend; what is too much goes in on the
     // outer.

@@ -25,10 +25,10 @@ class JointVolume {
               const SkinSpread& spread, std::span<const float> keep);
 
   std::size_t jointCount() const { return joints_.size(); }
-  // Adds to `along` (per point, along its normal, m) what bent joints have lost. `bend` per joint:
-  // 0 straight … 1 bent.
-  void restore(std::span<const JointMotion> motion, std::span<const float> bend,
-               std::span<const Vector4f> position, std::span<float> along) const;
+  // Adds to `along` (per point, along its normal, m) what bent and twisted joints have lost, and
+  // takes away what they have gained.
+  void restore(std::span<const JointMotion> motion, std::span<const Vector4f> position,
+               std::span<float> along) const;
 
  private:
   struct Reach {

@@ -166,7 +166,7 @@ void LimbContact::gatePairs(std::span<const float> bend, Scratch& scratch) const
     const float deepest = std::max(own, theirs);
     const float radius =
         std::min(parts_->part[pair.a].meanRadius_m(), parts_->part[pair.b].meanRadius_m()) *
-        (crease ? 2.f : 1.f);
+        (crease ? (parts_->hub[pair.a] || parts_->hub[pair.b] ? (getenv("HUBF") ? (float)atof(getenv("HUBF")) : 2.f) : 2.f) : 1.f);
     scratch.pairGate[k] =
         deepest <= 0 ? 0
                      : (crease ? bend[static_cast<std::size_t>(pair.bending)] : 1.f) *
@@ -179,6 +179,8 @@ void LimbContact::meet(std::span<const JointMotion> motion, std::span<const floa
                        std::span<Vector4f> position, std::span<Vector4f> turn,
                        std::span<WideRotation> rotation, Scratch& scratch) const {
   scratch.hit.assign(rest_.size(), {});
+  scratch.touched = false;
+  if (getenv("NOCONTACT")) return;
   scratch.pairDepth.resize(pairs_.size());
   scratch.pairGate.resize(pairs_.size());
   scratch.near.resize(clusters_.size());
@@ -234,7 +236,7 @@ void LimbContact::spreadActive(Scratch& scratch) const {
 void LimbContact::finish(std::span<const JointMotion> motion,
                          std::span<const WideRotation> rotation, std::span<Vector4f> position,
                          Scratch& scratch) const {
-  if (!scratch.touched) return;
+  if (!scratch.touched || getenv("NOFINISH")) return;
   spreadActive(scratch);
   scratch.before.resize(rest_.size());
   scratch.next.resize(rest_.size());
@@ -243,27 +245,26 @@ void LimbContact::finish(std::span<const JointMotion> motion,
     for (std::uint32_t q = firstEdge_[i]; q < firstEdge_[i + 1]; ++q)
       scratch.before[edges_[q].to] = position[edges_[q].to];
   }
+  // Hit points towards the rotated rest shape, by their gate; others give way with their neighbours.
   const auto relaxed = [&](std::uint32_t i) -> Vector4f {
-    Vector4f sum = Vector4f::Zero(), turned = Vector4f::Zero(), own = Vector4f::Zero();
-    float total = 0;
+    Vector4f moved = Vector4f::Zero(), sum = Vector4f::Zero(), turned = Vector4f::Zero(),
+             own = Vector4f::Zero();
+    float total = 1e-9f;
+    const float hit = scratch.ring[i] == 1 ? scratch.hit[i].gate : 0;
     for (std::uint32_t q = firstEdge_[i]; q < firstEdge_[i + 1]; ++q) {
       const Edge& e = edges_[q];
       const float w = e.weighted.w();
       total += w;
-      if (scratch.ring[i] == 1) {
-        sum += w * position[e.to];
-        turned += rotation[e.to] * e.weighted;
-        own += e.weighted;
-      } else {
-        sum += w * (position[e.to] - scratch.before[e.to]);
-      }
+      moved += w * (position[e.to] - scratch.before[e.to]);
+      if (hit <= 0) continue;
+      sum += w * position[e.to];
+      turned += rotation[e.to] * e.weighted;
+      own += e.weighted;
     }
-    if (total <= 0) return position[i];
-    if (scratch.ring[i] == 1) {
-      const Vector4f smooth = (sum + 0.5f * (turned + rotation[i] * own)) / total;
-      return position[i] + 0.3f * (smooth - position[i]);
-    }
-    return position[i] + 0.4f * (scratch.before[i] + sum / total - position[i]);
+    const Vector4f along = scratch.before[i] + moved / total - position[i];
+    if (hit <= 0) return position[i] + 0.4f * along;
+    const Vector4f smooth = (sum + 0.5f * (turned + rotation[i] * own)) / total - position[i];
+    return position[i] + (1 - hit) * 0.4f * along + hit * 0.3f * smooth;
   };
   const auto project = [&](std::uint32_t i, const Vector4f& x) -> Vector4f {
     const std::int32_t cluster = clusterOf_[i];
@@ -273,7 +274,7 @@ void LimbContact::finish(std::span<const JointMotion> motion,
     const Hit hit = find(motion, near, i, x);
     if (hit.pair < 0) return x;
     const float gate = hit.gate * scratch.pairGate[static_cast<std::size_t>(hit.pair)];
-    return pushOut(motion, pairs_[static_cast<std::size_t>(hit.pair)], i, x, std::sqrt(gate),
+    return pushOut(motion, pairs_[static_cast<std::size_t>(hit.pair)], i, x, gate,
                    std::max(hit.depth_m, scratch.hit[i].depth_m));
   };
   constexpr std::size_t kChunk = 64;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 
 #include <fascia/pose/limb_contact.h>
 
@@ -35,6 +36,23 @@ void divide(const PoseMesh& mesh, std::span<std::uint32_t> points, const Add& ad
   divide(mesh, points.subspan(points.size() / 2), add);
 }
 
+// Bones whose skin hangs together, both ways: only that folds in a crease. The shells of a doll's
+// joints turn inside of each other instead.
+std::set<std::array<std::uint32_t, 2>> seamsOf(const PoseMesh& mesh, const LimbParts& parts) {
+  std::set<std::array<std::uint32_t, 2>> seams;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = parts.home[t[k]], b = parts.home[t[(k + 1) % 3]];
+      if (a != b) seams.insert({a, b}), seams.insert({b, a});
+    }
+  // Skin of a short bone between two makes no seam of theirs, but their skin still meets.
+  const auto direct = seams;
+  for (const auto& [a, middle] : direct)
+    for (const auto& [other, b] : direct)
+      if (other == middle && a != b) seams.insert({a, b});
+  return seams;
+}
+
 }  // namespace
 
 LimbContact::LimbContact(const PoseSource& source, const PoseMesh& mesh,
@@ -52,11 +70,12 @@ LimbContact::LimbContact(const PoseSource& source, const PoseMesh& mesh,
 
 void LimbContact::findPairs(const PoseSource& source, const PoseMesh& mesh) {
   std::map<std::array<std::uint32_t, 2>, std::int32_t> found;
+  const std::set<std::array<std::uint32_t, 2>> seams = seamsOf(mesh, *parts_);
   const auto count = static_cast<std::uint32_t>(source.joints.size());
   for (std::uint32_t a = 0; a < count; ++a)
     for (std::uint32_t b = 0; b < count; ++b) {
       if (a == b || !parts_->part[a].exists() || !parts_->part[b].exists()) continue;
-      if (!parts_->meetInCrease(a, b)) continue;
+      if (!parts_->meetInCrease(a, b) || !seams.contains({a, b})) continue;
       if (addPair(source, mesh, a, b, true))
         found[{a, b}] = static_cast<std::int32_t>(pairs_.size()) - 1;
     }

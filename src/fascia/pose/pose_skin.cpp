@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fascia/base/parallel.h>
+#include <fascia/pose/softness.h>
 
 namespace fascia {
 namespace {
@@ -34,8 +35,7 @@ PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
   const std::size_t count = mesh_.size();
   parts_ = std::make_shared<const LimbParts>(makeLimbParts(source, mesh_));
   base_ = BasePose(source, mesh_);
-  std::vector<char> rigid = dials.rigid;
-  rigid.resize(count, 0);
+  const std::vector<char> rigid = dials.rigid.empty() ? stiffPieces(source, mesh_) : dials.rigid;
   contact_ = LimbContact(source, mesh_, parts_, rigid);
   elastic_ = ElasticLayer(source, mesh_, *parts_,
                           valuesOf(dials.tightness, rigid, PoseDials::kTightness), rigid);
@@ -60,7 +60,7 @@ Vec3 PoseSkin::placeJoints(std::span<const Transform> motion, Scratch& scratch) 
 // Volume and muscles along the normals, no farther than flesh goes.
 void PoseSkin::displaceFlesh(Scratch& scratch) const {
   scratch.along.assign(pointCount(), 0.f);
-  volume_.restore(scratch.joints, scratch.bend, scratch.position, scratch.along);
+  volume_.restore(scratch.joints, scratch.position, scratch.along);
   muscles_.swell(scratch.joints, scratch.along);
   forChunks(pointCount(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

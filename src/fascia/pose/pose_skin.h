@@ -23,7 +23,7 @@ struct PoseDials {
   std::vector<float> muscle;     // 0 none, 0.3 natural, 1 bodybuilder
   std::vector<float> volume;     // share of a bent joint's lost volume that comes out around it
   std::vector<float> tightness;  // how far the elastic skin evens out: 0 slack, 1 taut
-  std::vector<char> rigid;       // 1: the base pose and nothing else; empty: none
+  std::vector<char> rigid;       // 1: the base pose and nothing else; empty: stiffPieces()
 };
 
 // The skin of an imported figure as a function of where its joints are. Quasi-static: nothing is
