@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 #include <Eigen/OrderingMethods>
 
+#include <fascia/base/parallel.h>
 #include <fascia/math/cholesky/separator.h>
 
 namespace fascia::cholesky {
@@ -18,24 +20,29 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
+// Fewer nodes than this are ordered faster than another thread starts.
+constexpr std::size_t kWorthSharing = 1000;
+
+// Parts are ordered by several threads at once: parts have no edge between them, so nobody reads
+// what another one writes.
 class Dissection {
  public:
-  explicit Dissection(const Graph& graph) : graph_(graph), local_(at(graph.size()), -1) {
-    order_.reserve(at(graph.size()));
-  }
+  explicit Dissection(const Graph& graph)
+      : graph_(graph), local_(at(graph.size()), -1), order_(local_.size()) {}
 
   std::vector<int> run() {
-    std::vector<int> all(at(graph_.size()));
+    std::vector<int> all(order_.size());
     std::iota(all.begin(), all.end(), 0);
-    orderComponents(all);
+    orderComponents(all, order_);
     return std::move(order_);
   }
 
  private:
-  // Appends the nodes of each connected component to the order.
-  void orderComponents(const std::vector<int>& nodes) {
+  // Orders the nodes of each connected component on its own.
+  void orderComponents(const std::vector<int>& nodes, std::span<int> order) {
     for (const int node : nodes) local_[at(node)] = 0;
     std::vector<std::vector<int>> components;
+    std::vector<std::span<int>> places;
     for (const int node : nodes) {
       if (local_[at(node)] != 0) continue;
       std::vector<int>& component = components.emplace_back(1, node);
@@ -46,23 +53,31 @@ class Dissection {
             local_[at(u)] = -1;
             component.push_back(u);
           }
-    }
-    for (std::vector<int>& component : components) {
       std::sort(component.begin(), component.end());
-      orderConnected(component);
+      places.push_back(order.first(component.size()));
+      order = order.subspan(component.size());
     }
+    forEach(components.size(), nodes.size(),
+            [&](std::size_t k) { orderConnected(components[k], places[k]); });
   }
 
-  void orderConnected(const std::vector<int>& nodes) {
-    if (nodes.size() <= kLeafSize) return orderLeaf(nodes);
+  void orderConnected(const std::vector<int>& nodes, std::span<int> order) {
+    if (nodes.size() <= kLeafSize) return orderLeaf(nodes, order);
     const std::vector<Side> side = findSeparator(inducedBy(nodes));
     std::vector<int> parts[3];
     for (std::size_t k = 0; k < nodes.size(); ++k)
       parts[static_cast<std::size_t>(side[k])].push_back(nodes[k]);
-    if (parts[0].empty() || parts[1].empty()) return orderLeaf(nodes);
-    orderComponents(parts[0]);
-    orderComponents(parts[1]);
-    order_.insert(order_.end(), parts[2].begin(), parts[2].end());
+    const std::size_t left = parts[0].size(), right = parts[1].size();
+    if (left == 0 || right == 0) return orderLeaf(nodes, order);
+    const std::span<int> places[] = {order.first(left), order.subspan(left, right)};
+    forEach(2, nodes.size(), [&](std::size_t k) { orderComponents(parts[k], places[k]); });
+    std::copy(parts[2].begin(), parts[2].end(), order.begin() + static_cast<long>(left + right));
+  }
+
+  template <class Task>
+  static void forEach(std::size_t count, std::size_t nodes, const Task& task) {
+    if (nodes >= kWorthSharing) return parallelFor(count, task);
+    for (std::size_t k = 0; k < count; ++k) task(k);
   }
 
   WeightedGraph inducedBy(const std::vector<int>& nodes) {
@@ -81,7 +96,7 @@ class Dissection {
   }
 
   // Minimum degree is better than dissection where there are few nodes.
-  void orderLeaf(const std::vector<int>& nodes) {
+  void orderLeaf(const std::vector<int>& nodes, std::span<int> place) {
     const WeightedGraph graph = inducedBy(nodes);
     std::vector<Eigen::Triplet<double>> entries;
     for (int v = 0; v < graph.size(); ++v) {
@@ -93,7 +108,8 @@ class Dissection {
     pattern.setFromTriplets(entries.begin(), entries.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
     Eigen::AMDOrdering<int>()(pattern, order);
-    for (const int k : order.indices()) order_.push_back(nodes[at(k)]);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      place[k] = nodes[at(order.indices()[static_cast<Eigen::Index>(k)])];
   }
 
   const Graph& graph_;

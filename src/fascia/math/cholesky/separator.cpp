@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCoarsest = 100;
 constexpr int kTries = 4;
-constexpr int kPasses = 4;
+constexpr int kPasses = 3;
 constexpr int kPatience = 40;
 constexpr double kLargestPart = 0.6;  // of the weight
 
