@@ -14,7 +14,7 @@ constexpr float kAround = 2.4f;  // how far around a joint, in its radii
 constexpr float kInside = 0.7f;  // how much more comes out on the flesh's side than evenly
 constexpr float kBlended = 4;
 constexpr float kStill = 0.2f, kTurned = 0.8f;  // rad
-constexpr float kMost = 0.3f;  // of a joint's volume that may come or go
+constexpr float kMost = 0.3f;                   // of a joint's volume that may come or go
 constexpr float kNothing = 1e-5f;
 constexpr float kSkinDepth = 0.35f;  // radii below its part's surface: no skin but what is inside
 

@@ -18,7 +18,7 @@ constexpr float kGap = 0.02f;
 constexpr float kMostOverlap = 0.15f;
 // A limb that is driven right through another is the motion's business: between these depths, in
 // radii of the thinner limb, a contact lets go as a whole.
-constexpr float kHolds = 0.5f, kLetsGo = 1.2f;
+constexpr float kHolds = 1, kLetsGo = 2.4f;
 // How far a contact may move a point, in local radii.
 constexpr float kFarthest = 0.8f;
 constexpr int kPushes = 2;
@@ -51,7 +51,7 @@ void LimbContact::cull(std::span<const JointMotion> motion, std::span<const floa
     const Vector4f apart =
         motion[pair.a].point(wide(a.middle_m())) - motion[pair.b].point(wide(b.middle_m()));
     const float reach = reachOf(a) + reachOf(b);
-    const bool bent = pair.bending < 0 || bend[static_cast<std::size_t>(pair.bending)] > 0;
+    const bool bent = bend[pair.bending] > 0;
     scratch.pairGate[k] = bent && apart.squaredNorm() < reach * reach ? 1.f : 0.f;
   }
   parallelFor(clusters_.size(), [&](std::size_t c) {
@@ -159,19 +159,17 @@ void LimbContact::gatePairs(std::span<const float> bend, Scratch& scratch) const
   }
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const Pair& pair = pairs_[k];
-    const bool crease = pair.bending >= 0;
     const float own = scratch.pairDepth[k];
     const float theirs =
         pair.mirror < 0 ? 0 : scratch.pairDepth[static_cast<std::size_t>(pair.mirror)];
     const float deepest = std::max(own, theirs);
     const float radius =
-        std::min(parts_->part[pair.a].meanRadius_m(), parts_->part[pair.b].meanRadius_m()) *
-        (crease ? (parts_->hub[pair.a] || parts_->hub[pair.b] ? (getenv("HUBF") ? (float)atof(getenv("HUBF")) : 2.f) : 2.f) : 1.f);
+        std::min(parts_->part[pair.a].meanRadius_m(), parts_->part[pair.b].meanRadius_m());
     scratch.pairGate[k] =
-        deepest <= 0 ? 0
-                     : (crease ? bend[static_cast<std::size_t>(pair.bending)] : 1.f) *
-                           smoothStep(8 * std::min(own, theirs) / (deepest + 1e-9f)) *
-                           (1 - smoothStep((deepest / radius - kHolds) / (kLetsGo - kHolds)));
+        deepest <= 0
+            ? 0
+            : bend[pair.bending] * smoothStep(8 * std::min(own, theirs) / (deepest + 1e-9f)) *
+                  (1 - smoothStep((deepest / radius - kHolds) / (kLetsGo - kHolds)));
   }
 }
 
@@ -180,7 +178,6 @@ void LimbContact::meet(std::span<const JointMotion> motion, std::span<const floa
                        std::span<WideRotation> rotation, Scratch& scratch) const {
   scratch.hit.assign(rest_.size(), {});
   scratch.touched = false;
-  if (getenv("NOCONTACT")) return;
   scratch.pairDepth.resize(pairs_.size());
   scratch.pairGate.resize(pairs_.size());
   scratch.near.resize(clusters_.size());
@@ -236,7 +233,7 @@ void LimbContact::spreadActive(Scratch& scratch) const {
 void LimbContact::finish(std::span<const JointMotion> motion,
                          std::span<const WideRotation> rotation, std::span<Vector4f> position,
                          Scratch& scratch) const {
-  if (!scratch.touched || getenv("NOFINISH")) return;
+  if (!scratch.touched) return;
   spreadActive(scratch);
   scratch.before.resize(rest_.size());
   scratch.next.resize(rest_.size());
@@ -245,7 +242,8 @@ void LimbContact::finish(std::span<const JointMotion> motion,
     for (std::uint32_t q = firstEdge_[i]; q < firstEdge_[i + 1]; ++q)
       scratch.before[edges_[q].to] = position[edges_[q].to];
   }
-  // Hit points towards the rotated rest shape, by their gate; others give way with their neighbours.
+  // Hit points towards the rotated rest shape, by their gate; others give way with their
+  // neighbours.
   const auto relaxed = [&](std::uint32_t i) -> Vector4f {
     Vector4f moved = Vector4f::Zero(), sum = Vector4f::Zero(), turned = Vector4f::Zero(),
              own = Vector4f::Zero();

@@ -10,12 +10,12 @@
 
 namespace fascia {
 
-// Skin against skin: where the limb of a point, A, has sunk into another limb B, both sides meet on
-// the surface of equal depth f_A = f_B (the exact contact surface of Cani-Gascuel & Desbrun 1997).
-// With h = f_A - f_B - c, c what A and B overlap at rest at that point, a point with h > 0 is moved
-// by -h ∇h / |∇h|². Everything that decides whether a touch counts is a smooth gate between 0 and 1
-// (the gradient-controlled operators of Gourmel et al. 2013 in spirit): a contact comes and goes
-// without a jump as joints turn.
+// Skin against skin in creases: where the limb of a point, A, has sunk into the limb B that it
+// hangs together with, both sides meet on the surface of equal depth f_A = f_B (the exact contact
+// surface of Cani-Gascuel & Desbrun 1997). With h = f_A - f_B - c, c what A and B overlap at rest
+// at that point, a point with h > 0 is moved by -h ∇h / |∇h|². Everything that decides whether a
+// touch counts is a smooth gate between 0 and 1 (the gradient-controlled operators of Gourmel et
+// al. 2013 in spirit): a contact comes and goes without a jump as joints turn.
 class LimbContact {
  public:
   struct Hit {
@@ -73,8 +73,7 @@ class LimbContact {
   };
 
   void findPairs(const PoseSource& source, const PoseMesh& mesh);
-  bool addPair(const PoseSource& source, const PoseMesh& mesh, std::uint32_t a, std::uint32_t b,
-               bool crease);
+  bool addPair(const PoseSource& source, const PoseMesh& mesh, std::uint32_t a, std::uint32_t b);
   void findClusters(const PoseMesh& mesh, std::span<const char> rigid);
   void storeEdges(const PoseMesh& mesh);
 

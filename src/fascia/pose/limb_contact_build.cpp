@@ -75,9 +75,10 @@ void LimbContact::findPairs(const PoseSource& source, const PoseMesh& mesh) {
   for (std::uint32_t a = 0; a < count; ++a)
     for (std::uint32_t b = 0; b < count; ++b) {
       if (a == b || !parts_->part[a].exists() || !parts_->part[b].exists()) continue;
+      if (parts_->hub[a] || parts_->hub[b])
+        continue;  // one body is too simple for a hip or a chest
       if (!parts_->meetInCrease(a, b) || !seams.contains({a, b})) continue;
-      if (addPair(source, mesh, a, b, true))
-        found[{a, b}] = static_cast<std::int32_t>(pairs_.size()) - 1;
+      if (addPair(source, mesh, a, b)) found[{a, b}] = static_cast<std::int32_t>(pairs_.size()) - 1;
     }
   for (Pair& pair : pairs_) {
     const auto mirror = found.find({pair.b, pair.a});
@@ -87,7 +88,7 @@ void LimbContact::findPairs(const PoseSource& source, const PoseMesh& mesh) {
 
 // False where the two overlap at rest too much to tell a touch from the rest shape.
 bool LimbContact::addPair(const PoseSource& source, const PoseMesh& mesh, std::uint32_t a,
-                          std::uint32_t b, bool crease) {
+                          std::uint32_t b) {
   const LimbPart &own = parts_->part[a], &other = parts_->part[b];
   std::vector<float> overlaps;
   std::size_t clear = 0, bad = 0;
@@ -102,8 +103,7 @@ bool LimbContact::addPair(const PoseSource& source, const PoseMesh& mesh, std::u
   }
   if (clear == 0 || 10 * bad > clear) return false;
   pairsOf_[a].push_back(static_cast<std::uint32_t>(pairs_.size()));
-  pairs_.push_back({a, b, -1, crease ? static_cast<std::int32_t>(std::max(a, b)) : -1,
-                    static_cast<std::uint32_t>(overlap_m_.size())});
+  pairs_.push_back({a, b, -1, std::max(a, b), static_cast<std::uint32_t>(overlap_m_.size())});
   overlap_m_.insert(overlap_m_.end(), overlaps.begin(), overlaps.end());
   return true;
 }
