@@ -1,0 +1,119 @@
+#include "bench/deformation/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fascia {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// Ours over theirs; infinite if only they have nothing.
+double ratio(double ours, double theirs) {
+  if (theirs > 0) return ours / theirs;
+  return ours > 0 ? HUGE_VAL : kNone;
+}
+
+// Ratios over stages.
+class Ratios {
+ public:
+  void add(double ours, double theirs) {
+    const double value = ratio(ours, theirs);
+    if (value == value) values_.push_back(value);
+  }
+  double worst() const {
+    return values_.empty() ? kNone : *std::max_element(values_.begin(), values_.end());
+  }
+  double median() const {
+    if (values_.empty()) return kNone;
+    std::vector<double> sorted = values_;
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t half = sorted.size() / 2;
+    return sorted.size() % 2 == 1 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+// Two sums over stages.
+struct Sums {
+  double ours = 0, theirs = 0;
+  void add(double a, double b) { ours += a, theirs += b; }
+  double value() const { return ratio(ours, theirs); }
+};
+
+struct Totals {
+  double mostCrossings = kNone, leastLoss = kNone, restError_m = kNone;
+  int clipsNotFewer = 0, clips = 0;
+  Sums clipCrossings, poseTurned, bendLoss;
+  Ratios lumpiness, stretch, jitter;
+  double frame_s = 0;
+  int timed = 0;
+};
+
+void addPose(const StageResult& stage, const Score& ours, const Score& theirs, Totals& t) {
+  t.mostCrossings = std::fmax(t.mostCrossings, static_cast<double>(ours.crossings_in_piece));
+  t.leastLoss = std::fmin(t.leastLoss, ours.volume_loss);
+  t.restError_m = std::fmax(t.restError_m, ours.rest_error_m);
+  t.poseTurned.add(static_cast<double>(ours.turned), static_cast<double>(theirs.turned));
+  if (stage.isBend) t.bendLoss.add(std::max(0.0, ours.volume_loss), theirs.volume_loss);
+}
+
+void addClip(const Score& ours, const Score& theirs, Totals& t) {
+  ++t.clips;
+  t.clipsNotFewer += ours.turned > 0 && ours.turned >= theirs.turned ? 1 : 0;
+  t.clipCrossings.add(static_cast<double>(ours.crossings), static_cast<double>(theirs.crossings));
+  t.jitter.add(ours.jitter_m, theirs.jitter_m);
+}
+
+Totals totalsOf(const std::vector<StageResult>& stages, std::size_t number) {
+  Totals t;
+  const bool anyClip = std::any_of(stages.begin(), stages.end(),
+                                   [](const StageResult& stage) { return !stage.isPose; });
+  for (const StageResult& stage : stages) {
+    const Score& ours = stage.scores[number];
+    const Score& theirs = stage.scores.front();
+    if (stage.isPose)
+      addPose(stage, ours, theirs, t);
+    else
+      addClip(ours, theirs, t);
+    t.lumpiness.add(ours.lumpiness.rms, theirs.lumpiness.rms);
+    t.stretch.add(ours.stretch.percentile99, theirs.stretch.percentile99);
+    // Poses rest half of their time: clips tell better what a frame costs.
+    if (stage.isPose && anyClip) continue;
+    t.frame_s += stage.frame_s[number];
+    ++t.timed;
+  }
+  return t;
+}
+
+}  // namespace
+
+std::vector<SummaryMeasure> summarize(const RiggedModel& model,
+                                      const std::vector<StageResult>& stages, std::size_t number,
+                                      double jitterGoal) {
+  const Totals t = totalsOf(stages, number);
+  const auto points = static_cast<double>(model.points_m.size());
+  return {
+      {"pose_crossings", "crossings of one piece in a pose", t.mostCrossings, 3},
+      {"clip_crossings", "crossings in clips", t.clipCrossings.value(), 0.75},
+      {"pose_turned", "turned triangles in poses", t.poseTurned.value(), 0.25},
+      {"clips_with_more_turned", "clips without fewer turned triangles",
+       t.clips > 0 ? t.clipsNotFewer : kNone, 0},
+      {"lumpiness_median", "lumpiness, median", t.lumpiness.median(), 0.8},
+      {"lumpiness_worst", "lumpiness, worst", t.lumpiness.worst(), 1},
+      {"bend_volume_loss", "volume lost in bends", t.bendLoss.value(), 0.5},
+      {"volume_gain", "largest gain of volume", -t.leastLoss, 0.1},
+      {"stretch_median", "99 % stretch, median", t.stretch.median(), 0.85},
+      {"stretch_worst", "99 % stretch, worst", t.stretch.worst(), 1},
+      {"jitter_worst", "jitter, worst", t.jitter.worst(), jitterGoal > 0 ? jitterGoal : kNone},
+      {"rest_error", "error at rest, of the height",
+       model.height_m() > 0 ? t.restError_m / model.height_m() : kNone, 1e-6},
+      {"point_frame_us", "µs per point and frame",
+       t.timed > 0 && points > 0 ? 1e6 * t.frame_s / t.timed / points : kNone, 0.2},
+  };
+}
+
+}  // namespace fascia
