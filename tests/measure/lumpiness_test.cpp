@@ -75,7 +75,7 @@ TriangleMesh net(std::uint32_t side) {
   TriangleMesh mesh;
   for (std::uint32_t y = 0; y <= side; ++y)
     for (std::uint32_t x = 0; x <= side; ++x)
-      mesh.positions.emplace_back(x + 0.5f * y, std::sqrt(0.75f) * y, 0.f);
+      mesh.positions.push_back(Vec3(x + 0.5 * y, std::sqrt(0.75) * y, 0).cast<float>());
   for (std::uint32_t y = 0; y < side; ++y)
     for (std::uint32_t x = 0; x < side; ++x) {
       const std::uint32_t p = y * (side + 1) + x, up = p + side + 1;

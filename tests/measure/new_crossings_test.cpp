@@ -85,8 +85,8 @@ TEST(NewCrossings, OfFoldsCountAsEver) {
 // Two triangles that touch within the tolerance at rest, upright on each other.
 struct Cross {
   std::vector<std::array<std::uint32_t, 3>> triangles = {{0, 1, 2}, {3, 4, 5}};
-  Points rest = {{-1, -1, 0},   {1, -1, 0},   {0, 1, 0},       // in the plane z = 0
-                 {0, 0, 5e-5f}, {0.2f, 0, 1}, {-0.2f, 0, 1}};  // above it, a tip down
+  Points rest = {{-1, -1, 0},   {1, -1, 0}, {0, 1, 0},    // in the plane z = 0
+                 {0, 0, 5e-5f}, {2, 0, 1},  {-2, 0, 1}};  // above it, a blunt tip down
   std::size_t count(float sunk) const {
     Points now = rest;
     for (std::size_t p = 3; p < 6; ++p) now[p].z() -= sunk;

@@ -88,20 +88,23 @@ Json toJson(const StageResult& stage, std::size_t points) {
 }
 
 void saySummary(const std::vector<SummaryRow>& rows, const Console& console) {
-  console.say(
-      "\nagainst        crossings       turned      lumpiness       volume     99 % stretch   "
-      "jitter   error   µs per");
-  console.say(
-      "linear blend    poses   clips  poses  clips  median   worst    lost   gain  median   worst  "
-      " worst at rest  point");
+  // A cell is 8 wide, the last for its mark.
+  console.say(fmt::format("\n{:17}{:^16}{:^16}{:^16}{:^16}{:^16}{:>7} {:>7} {:>7}", "against",
+                          "crossings", "turned", "lumpiness", "volume", "99 % stretch", "jitter",
+                          "error", "µs per"));
+  std::string columns = fmt::format("{:17}", "linear blend");
+  for (const char* column : {"poses", "clips", "poses", "clips", "median", "worst", "lost", "gain",
+                             "median", "worst", "worst", "at rest", "point"})
+    columns += fmt::format("{:>7} ", column);
+  console.say(columns);
   for (const SummaryRow& row : rows) {
-    std::string line = fmt::format("{:14}", row.method.substr(0, 14));
+    std::string line = fmt::format("{:17}", row.method);
     for (const SummaryMeasure& measure : row.measures) line += cell(measure, row.isJudged);
     console.say(line);
   }
   for (const SummaryRow& row : rows) {
     if (!row.isJudged) continue;
-    std::string line = fmt::format("{:14}", "goal");
+    std::string line = fmt::format("{:17}", "goal");
     std::string missed;
     for (const SummaryMeasure& measure : row.measures) {
       line += goalCell(measure.goal);
