@@ -108,6 +108,14 @@ TEST(JointPoses, OfASnakeBendItsMiddle) {
   EXPECT_NEAR(before.normalized().dot(after.normalized()), 0.5, 1e-5);
 }
 
+TEST(JointPoses, OfJointsOnOnePlaceBendTheLast) {
+  RiggedModel model;
+  model.joints = {{"root", -1, {}, -1}, {"tip", 0, {}, -1}};
+  model.points_m = {{0, 0, 0}, {1, 1, 1}};
+  model.weights.resize(2);
+  EXPECT_THAT(names(findPoses(model, kBends)), ElementsAre("tip bent by 60°"));
+}
+
 TEST(JointPoses, OfNothingAreNone) {
   RiggedModel model;
   model.joints = {{"root", -1, {}, -1}};

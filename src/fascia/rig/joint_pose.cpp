@@ -139,8 +139,10 @@ class PoseFinder {
       const auto parent = static_cast<std::size_t>(model_.joints[j].parent);
       length_m[j] = length_m[parent] + (place(j) - place(parent)).norm();
     }
-    const auto tip = static_cast<std::size_t>(std::max_element(length_m.begin(), length_m.end()) -
-                                              length_m.begin());
+    // The last among equals: joints on one place are no row, but bend all the same.
+    std::size_t tip = 0;
+    for (std::size_t j = 1; j < length_m.size(); ++j)
+      if (length_m[j] >= length_m[tip]) tip = j;
     std::size_t at = tip;
     while (at > 0 && length_m[at] > 0.5 * length_m[tip] && model_.joints[at].parent > 0)
       at = static_cast<std::size_t>(model_.joints[at].parent);
