@@ -113,6 +113,7 @@ TEST(JointPoses, OfJointsOnOnePlaceBendTheLast) {
   model.joints = {{"root", -1, {}, -1}, {"tip", 0, {}, -1}};
   model.points_m = {{0, 0, 0}, {1, 1, 1}};
   model.weights.resize(2);
+  model.weights[0].weight[0] = model.weights[1].weight[0] = 1;
   EXPECT_THAT(names(findPoses(model, kBends)), ElementsAre("tip bent by 60°"));
 }
 
@@ -145,6 +146,14 @@ RiggedModel arm(bool isRigid) {
     model.weights.push_back(w);
   }
   return model;
+}
+
+TEST(JointPoses, OfJointsThatAllHangOnTheRootBendTheOneThatSharesMostSkin) {
+  RiggedModel model = arm(false);
+  model.joints.push_back({"far", 0, {Mat3::Identity(), {9, 0, 0}}, -1});
+  model.joints[2].parent = 0;
+  // Joint 1 passes skin on at both of its ends, joint 2 at one, the last nowhere.
+  EXPECT_THAT(names(findPoses(model, kBends)), ElementsAre("j1 bent by 60°"));
 }
 
 TEST(JointPoseRegion, IsWhatBothSidesHoldOnTo) {

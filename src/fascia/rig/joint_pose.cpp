@@ -20,6 +20,33 @@ std::string degreesText(double angle_rad) {
   return std::to_string(std::lround(degrees(angle_rad))) + "°";
 }
 
+// Of every point the share of its weight that is on a joint and what is below it.
+std::vector<float> shareBelow(const RiggedModel& model, std::size_t joint) {
+  std::vector<bool> below(model.joints.size(), false);
+  for (std::size_t j = 0; j < below.size(); ++j)
+    below[j] = j == joint || (model.joints[j].parent >= 0 &&
+                              below[static_cast<std::size_t>(model.joints[j].parent)]);
+  std::vector<float> share(model.weights.size(), 0);
+  for (std::size_t p = 0; p < share.size(); ++p)
+    for (std::size_t k = 0; k < PointWeights::kMost; ++k)
+      if (below[model.weights[p].joint[k]]) share[p] += model.weights[p].weight[k];
+  return share;
+}
+
+// The points that both a joint and what is above it hold on to.
+std::vector<bool> heldByBoth(const RiggedModel& model, std::size_t joint) {
+  constexpr float kHolds = 0.02f;
+  const std::vector<float> share = shareBelow(model, joint);
+  std::vector<bool> held(share.size());
+  for (std::size_t p = 0; p < held.size(); ++p)
+    held[p] = share[p] > kHolds && share[p] < 1 - kHolds;
+  return held;
+}
+
+std::size_t countOf(const std::vector<bool>& flags) {
+  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), true));
+}
+
 class PoseFinder {
  public:
   explicit PoseFinder(const RiggedModel& model)
@@ -146,6 +173,7 @@ class PoseFinder {
     std::size_t at = tip;
     while (at > 0 && length_m[at] > 0.5 * length_m[tip] && model_.joints[at].parent > 0)
       at = static_cast<std::size_t>(model_.joints[at].parent);
+    if (model_.joints[at].parent == 0) at = jointOfMostSkin();
     if (at == 0) return;
     const auto along = between(static_cast<std::size_t>(model_.joints[at].parent), at);
     const Vec3 direction = along ? *along : Vec3(Vec3::UnitY());
@@ -153,24 +181,21 @@ class PoseFinder {
                std::abs(direction.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY(), kRow_rad);
   }
 
+  // In a row of one (some files hang all joints on the root): the joint that shares most skin.
+  std::size_t jointOfMostSkin() const {
+    std::size_t best = 0, most = 0;
+    for (std::size_t j = 1; j < model_.joints.size(); ++j) {
+      const std::size_t count = countOf(heldByBoth(model_, j));
+      if (best == 0 || count > most) best = j, most = count;
+    }
+    return best;
+  }
+
   const RiggedModel& model_;
   std::vector<Hinge> hinges_;
   std::vector<JointMeaning> meanings_;
   std::vector<JointPose> poses_;
 };
-
-// Of every point the share of its weight that is on a joint and what is below it.
-std::vector<float> shareBelow(const RiggedModel& model, std::size_t joint) {
-  std::vector<bool> below(model.joints.size(), false);
-  for (std::size_t j = 0; j < below.size(); ++j)
-    below[j] = j == joint || (model.joints[j].parent >= 0 &&
-                              below[static_cast<std::size_t>(model.joints[j].parent)]);
-  std::vector<float> share(model.weights.size(), 0);
-  for (std::size_t p = 0; p < share.size(); ++p)
-    for (std::size_t k = 0; k < PointWeights::kMost; ++k)
-      if (below[model.weights[p].joint[k]]) share[p] += model.weights[p].weight[k];
-  return share;
-}
 
 // Distance from a joint within which points are near it, where weights do not tell: half of the
 // longest of the segments that meet there.
@@ -200,13 +225,9 @@ SampledMotion poseMotion(const RiggedModel& model, const JointPose& pose) {
 
 HingeRegion regionOf(const RiggedModel& model, const JointPose& pose) {
   if (pose.hinge) return regionOf(model, *pose.hinge);
-  constexpr float kHolds = 0.02f;
   constexpr std::size_t kFewest = 12;  // points that say something about a joint
-  const std::vector<float> share = shareBelow(model, pose.joint);
-  std::vector<bool> near(share.size());
-  for (std::size_t p = 0; p < near.size(); ++p)
-    near[p] = share[p] > kHolds && share[p] < 1 - kHolds;
-  if (static_cast<std::size_t>(std::count(near.begin(), near.end(), true)) < kFewest) {
+  std::vector<bool> near = heldByBoth(model, pose.joint);
+  if (countOf(near) < kFewest) {
     const Vec3& center = model.joints[pose.joint].rest_world.translation_m;
     const double reach = reach_m(model, pose.joint);
     for (std::size_t p = 0; p < near.size(); ++p)

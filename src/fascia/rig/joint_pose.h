@@ -30,7 +30,8 @@ struct JointPose {
 // - of others: the limbs of its hinges, swung forwards (hanging limbs: legs) or raised (wings) by
 //   45°;
 // - where something is called head: its neck turned by 65° to the side;
-// - of bodies without limbs: the middle of its longest row of joints bent by 60°.
+// - of bodies without limbs: the middle of its longest row of joints bent by 60° (or, where all
+//   joints hang on the root, the one that shares most skin).
 // Bends that the bind pose nearly has are left out.
 std::vector<JointPose> findPoses(const RiggedModel& model, const std::vector<double>& bends_rad);
 

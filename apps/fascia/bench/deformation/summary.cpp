@@ -15,12 +15,17 @@ double ratio(double ours, double theirs) {
   return ours > 0 ? HUGE_VAL : kNone;
 }
 
+// Less than this nobody sees, and its ratios say nothing: of lumpiness (in edges), and of jitter
+// (of the model's size: 0.02 mm on a person).
+constexpr double kLeastLump = 1e-3, kLeastJitter = 1e-5;
+
 // Ratios over stages.
 class Ratios {
  public:
+  explicit Ratios(double least) : least_(least) {}
   void add(double ours, double theirs) {
-    const double value = ratio(ours, theirs);
-    if (value == value) values_.push_back(value);
+    if (!(ours <= least_) || !(theirs <= least_))
+      values_.push_back(std::max(ours, least_) / std::max(theirs, least_));
   }
   double worst() const {
     return values_.empty() ? kNone : *std::max_element(values_.begin(), values_.end());
@@ -34,43 +39,53 @@ class Ratios {
   }
 
  private:
+  double least_;
   std::vector<double> values_;
 };
 
-// Two sums over stages.
-struct Sums {
-  double ours = 0, theirs = 0;
-  void add(double a, double b) { ours += a, theirs += b; }
-  double value() const { return ratio(ours, theirs); }
+// Two sums of counts over stages: against nothing, each counts as one.
+struct Counts {
+  std::size_t ours = 0, theirs = 0;
+  void add(std::size_t a, std::size_t b) { ours += a, theirs += b; }
+  double value() const {
+    if (ours + theirs == 0) return kNone;
+    return static_cast<double>(ours) / static_cast<double>(std::max<std::size_t>(theirs, 1));
+  }
 };
 
 struct Totals {
   double mostCrossings = kNone, mostGain = kNone, restError_m = kNone;
   int clipsNotFewer = 0, clips = 0;
-  Sums clipCrossings, poseTurned, bendLoss;
-  Ratios lumpiness, stretch, jitter;
+  Counts clipCrossings, poseTurned;
+  double bendLoss = 0, bendLossOfTheirs = 0;
+  Ratios lumpiness{kLeastLump}, stretch{0}, jitter;
   double frame_s = 0;
   int timed = 0;
+
+  explicit Totals(double size_m) : jitter(kLeastJitter * size_m) {}
 };
 
 void addPose(const StageResult& stage, const Score& ours, const Score& theirs, Totals& t) {
   t.mostCrossings = std::fmax(t.mostCrossings, static_cast<double>(ours.crossings_in_piece));
   // Where linear blending gains, too, the pose is what makes the gain: an arm raised opens its pit.
-  t.mostGain = std::fmax(t.mostGain, std::min(0.0, theirs.volume_loss) - ours.volume_loss);
+  const double gain = std::min(0.0, theirs.volume_loss) - ours.volume_loss;
+  t.mostGain = std::fmax(t.mostGain, std::max(0.0, gain));
   t.restError_m = std::fmax(t.restError_m, ours.rest_error_m);
-  t.poseTurned.add(static_cast<double>(ours.turned), static_cast<double>(theirs.turned));
-  if (stage.isBend) t.bendLoss.add(std::max(0.0, ours.volume_loss), theirs.volume_loss);
+  t.poseTurned.add(ours.turned, theirs.turned);
+  if (!stage.isBend) return;
+  t.bendLoss += std::max(0.0, ours.volume_loss);
+  t.bendLossOfTheirs += std::max(0.0, theirs.volume_loss);
 }
 
 void addClip(const Score& ours, const Score& theirs, Totals& t) {
   ++t.clips;
   t.clipsNotFewer += ours.turned > 0 && ours.turned >= theirs.turned ? 1 : 0;
-  t.clipCrossings.add(static_cast<double>(ours.crossings), static_cast<double>(theirs.crossings));
+  t.clipCrossings.add(ours.crossings, theirs.crossings);
   t.jitter.add(ours.jitter_m, theirs.jitter_m);
 }
 
-Totals totalsOf(const std::vector<StageResult>& stages, std::size_t number) {
-  Totals t;
+Totals totalsOf(const std::vector<StageResult>& stages, std::size_t number, double size_m) {
+  Totals t(size_m);
   const bool anyClip = std::any_of(stages.begin(), stages.end(),
                                    [](const StageResult& stage) { return !stage.isPose; });
   for (const StageResult& stage : stages) {
@@ -95,7 +110,7 @@ Totals totalsOf(const std::vector<StageResult>& stages, std::size_t number) {
 std::vector<SummaryMeasure> summarize(const RiggedModel& model,
                                       const std::vector<StageResult>& stages, std::size_t number,
                                       double jitterGoal) {
-  const Totals t = totalsOf(stages, number);
+  const Totals t = totalsOf(stages, number, model.size_m());
   const auto points = static_cast<double>(model.points_m.size());
   return {
       {"pose_crossings", "crossings of one piece in a pose", t.mostCrossings, 3},
@@ -105,7 +120,7 @@ std::vector<SummaryMeasure> summarize(const RiggedModel& model,
        t.clips > 0 ? t.clipsNotFewer : kNone, 0},
       {"lumpiness_median", "lumpiness, median", t.lumpiness.median(), 0.8},
       {"lumpiness_worst", "lumpiness, worst", t.lumpiness.worst(), 1},
-      {"bend_volume_loss", "volume lost in bends", t.bendLoss.value(), 0.5},
+      {"bend_volume_loss", "volume lost in bends", ratio(t.bendLoss, t.bendLossOfTheirs), 0.5},
       {"volume_gain", "largest gain of volume", t.mostGain, 0.1},
       {"stretch_median", "99 % stretch, median", t.stretch.median(), 0.85},
       {"stretch_worst", "99 % stretch, worst", t.stretch.worst(), 1},
