@@ -73,13 +73,19 @@ Vec3 PosePictures::bestSide(const std::vector<Eigen::Vector3f>& points) const {
 }
 
 Camera PosePictures::camera(const std::vector<Eigen::Vector3f>& points) const {
-  Box box;
-  for (const std::uint32_t p : region_.pointsNearJoint) box.add(points[p].cast<double>());
-  if (box.empty())
-    for (const Eigen::Vector3f& p : points) box.add(p.cast<double>());
+  const std::vector<std::uint32_t>& near = region_.pointsNearJoint;
+  Vec3 mean = model_.joints[pose_.joint].rest_world.translation_m;
+  std::vector<double> distance;
+  if (!near.empty()) mean.setZero();
+  for (const std::uint32_t p : near)
+    mean += points[p].cast<double>() / static_cast<double>(near.size());
+  for (const std::uint32_t p : near) distance.push_back((points[p].cast<double>() - mean).norm());
+  // Without the farthest tenth: a few stray weights at a foot would make a knee tiny.
+  std::sort(distance.begin(), distance.end());
+  const double most_m = distance.empty() ? 0 : distance[distance.size() * 9 / 10];
   Camera camera;
-  camera.target_m = box.center();
-  const double reach_m = std::max(0.5 * box.size().norm(), 0.03 * model_.size_m());
+  camera.target_m = mean;
+  const double reach_m = std::max(1.15 * most_m, 0.03 * model_.size_m());
   const double distance_m = 1.5 * reach_m / std::tan(0.5 * camera.vertical_fov_rad);
   const Vec3 from = bestSide(points);
   camera.eye_m = camera.target_m + distance_m * from;
