@@ -29,11 +29,12 @@ void Console::hint(const std::string& line) const {
 
 void Console::answer(const Json& document) const {
   if (json_) fmt::print("{}", printJson(document));
+  answered_ = true;
 }
 
 void Console::fail(const Error& error) const {
   for (const Issue& issue : error.issues()) fmt::print(stderr, "error: {}\n", issue.text());
-  answer(Json::Object{{"ok", false}, {"issues", toJson(error.issues())}});
+  if (!answered_) answer(Json::Object{{"ok", false}, {"issues", toJson(error.issues())}});
 }
 
 bool Console::showsProgress() const {

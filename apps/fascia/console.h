@@ -23,13 +23,15 @@ class Console {
   void detail(const std::string& text) const;  // stdout; only with --verbose
   void hint(const std::string& line) const;    // stderr; not with --quiet
   void answer(const Json& document) const;     // stdout; only with --json
-  void fail(const Error& error) const;         // every issue a line on stderr; JSON with --json
+  // Every issue a line on stderr; with --json the answer, unless one was given.
+  void fail(const Error& error) const;
 
   // Whether a moving progress bar makes sense: someone is watching, and wants text.
   bool showsProgress() const;
 
  private:
   bool json_ = false;
+  mutable bool answered_ = false;
   bool quiet_ = false;
   bool verbose_ = false;
 };

@@ -174,26 +174,38 @@ std::vector<Hinge> findHinges(const RiggedModel& model, std::size_t most) {
   return hinges;
 }
 
-SampledMotion bendMotion(const RiggedModel& model, const Hinge& hinge, double flexion_rad) {
+SampledMotion turnMotion(const RiggedModel& model, std::size_t joint, const Vec3& axis_world,
+                         double turn_rad) {
   constexpr int kRate_hz = 60;
   SampledMotion motion;
   motion.rate_hz = kRate_hz;
-  motion.name = "bend " + model.joints[hinge.joint].name;
-  for (const RigJoint& joint : model.joints) motion.joints.push_back(joint.name);
+  motion.name = "turn " + model.joints[joint].name;
+  for (const RigJoint& each : model.joints) motion.joints.push_back(each.name);
   std::vector<Transform> rest;
   for (std::size_t j = 0; j < model.joints.size(); ++j) rest.push_back(restInParent(model, j));
-  const Vec3 axis = model.joints[hinge.joint].rest_world.rotation.transpose() * hinge.axis;
-  const double turn_rad = hinge.turnFor_rad(flexion_rad);
+  const Vec3 axis = model.joints[joint].rest_world.rotation.transpose() * axis_world;
   for (int frame = 0; frame <= 2 * kRate_hz; ++frame) {
     const double t = std::min(1.0, static_cast<double>(frame) / kRate_hz);
     const double eased = t * t * t * (t * (6 * t - 15) + 10);  // starts and stops softly
     const Eigen::AngleAxisd turn(eased * turn_rad, axis);
     for (std::size_t j = 0; j < rest.size(); ++j) {
-      const Quat rotation(j == hinge.joint ? Mat3(rest[j].rotation * turn) : rest[j].rotation);
-      motion.rotation.push_back(rotation.normalized().cast<float>());
+      Quat rotation(j == joint ? Mat3(rest[j].rotation * turn) : rest[j].rotation);
+      rotation.normalize();
+      // Turns of more than 90° may come out in the other hemisphere.
+      if (frame > 0 &&
+          rotation.coeffs().dot(
+              motion.rotation[motion.rotation.size() - rest.size()].coeffs().cast<double>()) < 0)
+        rotation.coeffs() *= -1;
+      motion.rotation.push_back(rotation.cast<float>());
       motion.translation_m.push_back(rest[j].translation_m.cast<float>());
     }
   }
+  return motion;
+}
+
+SampledMotion bendMotion(const RiggedModel& model, const Hinge& hinge, double flexion_rad) {
+  SampledMotion motion = turnMotion(model, hinge.joint, hinge.axis, hinge.turnFor_rad(flexion_rad));
+  motion.name = "bend " + model.joints[hinge.joint].name;
   return motion;
 }
 

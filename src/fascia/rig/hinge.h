@@ -27,11 +27,17 @@ struct Hinge {
 // the shape of one: two long segments in a row. A body without limbs has none.
 std::vector<Hinge> findHinges(const RiggedModel& model, std::size_t most = 2);
 
+// Turns one joint about a world axis (unit), from the bind pose, within a second, and holds it for
+// another. Everything else keeps its place on its parent.
+SampledMotion turnMotion(const RiggedModel& model, std::size_t joint, const Vec3& axis_world,
+                         double turn_rad);
+
 // Bends one hinge from the bind pose to a flexion within a second and holds it for another.
 SampledMotion bendMotion(const RiggedModel& model, const Hinge& hinge, double flexion_rad);
 
-// The part of the surface that a hinge moves, cut off where the limb begins; its points near the
-// joint (at rest, along either segment, within half of the shorter one), and their triangles.
+// The part of the surface that a joint moves, and what is near the joint. Of a hinge: the limb, cut
+// off where it begins; near are the points that lie (at rest, along either segment) within half of
+// the shorter one, and their triangles.
 struct HingeRegion {
   std::vector<std::array<std::uint32_t, 3>> limb, nearJoint;
   std::vector<std::uint32_t> pointsNearJoint;  // increasing

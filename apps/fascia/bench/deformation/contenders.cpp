@@ -45,7 +45,7 @@ class BlendContender : public Contender {
     Stopwatch watch;
     watch.start();
     for (std::size_t f = 0; f < count; ++f) {
-      poseRig(*stage.model, 0, static_cast<double>(f) / kContestRate_hz, world);
+      poseRig(*stage.model, stage.motion, static_cast<double>(f) / kContestRate_hz, world);
       restToFrame(*stage.model, world, motion);
       skinning_->deform(motion, performance.frames[f]);
     }
@@ -59,25 +59,36 @@ class BlendContender : public Contender {
   std::unique_ptr<BlendSkinning> skinning_;
 };
 
+// How much a Fascia that may jiggle may tremble beside linear blending.
+constexpr double kJitterOfJiggle = 2.5;
+
+// The surface that a character shows, vertex by vertex.
+void showCharacter(const Character& character, const CharacterState& state, TriangleMesh& surface) {
+  skinSurface(*character.skin(), state.skin, surface);
+}
+
 class FasciaContender : public Contender {
  public:
-  explicit FasciaContender(CharacterDef def) : def_(std::move(def)) {}
-  std::string name() const override { return "fascia"; }
+  FasciaContender(std::string name, std::shared_ptr<const RiggedModel> model, CharacterDef def,
+                  double jitterGoal, const BuildOptions& options = {})
+      : name_(std::move(name)),
+        jitterGoal_(jitterGoal),
+        model_(std::move(model)),
+        character_(onModel(model_, std::move(def)), options) {
+    if (!character_.skin()) throw Error("the character has no skin to compare");
+    // Vertices that share a point lie on one place.
+    vertexOf_.resize(model_->points_m.size(), 0);
+    for (std::uint32_t v = 0; v < model_->vertices.size(); ++v)
+      vertexOf_[model_->vertices[v].point] = v;
+  }
+  std::string name() const override { return name_; }
+  double jitterGoal() const override { return jitterGoal_; }
 
   ContestFrames perform(const ContestStage& stage, const Console& console) override {
-    CharacterDef def = def_;
-    def.rig->model = stage.model;
-    def.motions.clear();  // one of the same name would hide the rig's
-    const Character character(def);
-    if (!character.skin()) throw Error("the character has no skin to compare");
-    const int motion = chooseMotion(character, stage.model->motions.front().name);
-
-    // Vertices that share a point lie on one place.
-    std::vector<std::uint32_t> vertexOf(stage.model->points_m.size(), 0);
-    for (std::uint32_t v = 0; v < stage.model->vertices.size(); ++v)
-      vertexOf[stage.model->vertices[v].point] = v;
+    const std::size_t rigMotion = static_cast<std::size_t>(stage.motion);
+    const int motion = chooseMotion(character_, model_->motions[rigMotion].name);
     ContestFrames performance;
-    CharacterState state = initialState(character, motion);
+    CharacterState state = initialState(character_, motion);
     SkinStats stats;
     Stopwatch watch;
     TriangleMesh surface;
@@ -85,12 +96,12 @@ class FasciaContender : public Contender {
     for (std::size_t f = 0; f < stage.motions.size(); ++f) {
       if (f > 0) {
         watch.start();
-        advance(character, motion, 1 / kContestRate_hz, state, stats);
+        advance(character_, motion, 1 / kContestRate_hz, state, stats);
         watch.stop();
       }
-      skinSurface(*character.skin(), state.skin, surface);
+      showCharacter(character_, state, surface);
       performance.frames.emplace_back();
-      for (const std::uint32_t v : vertexOf)
+      for (const std::uint32_t v : vertexOf_)
         performance.frames.back().push_back(surface.positions[v]);
       const auto done = static_cast<double>(f + 1);
       if (!progress.update(done / static_cast<double>(stage.motions.size()))) throw Interrupted{};
@@ -100,36 +111,46 @@ class FasciaContender : public Contender {
   }
 
  private:
-  CharacterDef def_;
+  static CharacterDef onModel(std::shared_ptr<const RiggedModel> model, CharacterDef def) {
+    def.rig->model = std::move(model);
+    def.motions.clear();  // one of the same name would hide the rig's
+    return def;
+  }
+
+  std::string name_;
+  double jitterGoal_;
+  std::shared_ptr<const RiggedModel> model_;
+  Character character_;
+  std::vector<std::uint32_t> vertexOf_;  // of a point
 };
 
 }  // namespace
 
-ContestStage makeContestStage(const RiggedModel& model, const SampledMotion& motion,
+ContestStage makeContestStage(std::shared_ptr<const RiggedModel> model, int motion,
                               double longest_s) {
-  RiggedModel copy = model;
-  copy.motions = {motion};
-  ContestStage stage{std::make_shared<const RiggedModel>(std::move(copy)), {}};
+  ContestStage stage{std::move(model), motion, {}};
+  const SampledMotion& shown = stage.model->motions[static_cast<std::size_t>(motion)];
   // At least one step, or there would be nothing to simulate.
-  const double duration_s = std::min(longest_s, motion.duration_s());
+  const double duration_s = std::min(longest_s, shown.duration_s());
   const auto frames = static_cast<std::size_t>(
       std::max<long long>(2, std::llround(duration_s * kContestRate_hz) + 1));
   stage.motions.resize(frames);
   std::vector<Transform> world;
   for (std::size_t f = 0; f < frames; ++f) {
-    poseRig(*stage.model, 0, static_cast<double>(f) / kContestRate_hz, world);
+    poseRig(*stage.model, motion, static_cast<double>(f) / kContestRate_hz, world);
     restToFrame(*stage.model, world, stage.motions[f]);
   }
   return stage;
 }
 
-std::vector<std::unique_ptr<Contender>> makeContenders(const RiggedModel& model,
+std::vector<std::unique_ptr<Contender>> makeContenders(std::shared_ptr<const RiggedModel> model,
                                                        const CharacterDef* character) {
   std::vector<std::unique_ptr<Contender>> all;
-  all.push_back(std::make_unique<BlendContender>(std::make_unique<LinearBlend>(model)));
-  all.push_back(std::make_unique<BlendContender>(std::make_unique<DualQuaternionBlend>(model)));
-  all.push_back(std::make_unique<BlendContender>(std::make_unique<DeltaMush>(model)));
-  if (character != nullptr) all.push_back(std::make_unique<FasciaContender>(*character));
+  all.push_back(std::make_unique<BlendContender>(std::make_unique<LinearBlend>(*model)));
+  all.push_back(std::make_unique<BlendContender>(std::make_unique<DualQuaternionBlend>(*model)));
+  all.push_back(std::make_unique<BlendContender>(std::make_unique<DeltaMush>(*model)));
+  if (character == nullptr) return all;
+  all.push_back(std::make_unique<FasciaContender>("fascia", model, *character, kJitterOfJiggle));
   return all;
 }
 

@@ -13,14 +13,15 @@ namespace fascia {
 
 inline constexpr double kContestRate_hz = 60;
 
-// A rig whose first motion is the one to be shown, and where its joints are in every frame: from
-// the bind pose to the frame.
+// A rig, which of its motions is to be shown, and where its joints are in every frame: from the
+// bind pose to the frame.
 struct ContestStage {
   std::shared_ptr<const RiggedModel> model;
+  int motion = 0;
   std::vector<std::vector<Transform>> motions;  // frame, joint
 };
 // Frames at kContestRate_hz, for at most `longest_s`.
-ContestStage makeContestStage(const RiggedModel& model, const SampledMotion& motion,
+ContestStage makeContestStage(std::shared_ptr<const RiggedModel> model, int motion,
                               double longest_s);
 
 // A motion as one way of skinning shows it.
@@ -35,10 +36,13 @@ class Contender {
   virtual ~Contender() = default;
   virtual std::string name() const = 0;
   virtual ContestFrames perform(const ContestStage& stage, const Console& console) = 0;
+  // How much more than linear blending it may tremble; 0: nobody asks.
+  virtual double jitterGoal() const { return 0; }
 };
 
-// Linear blending, dual quaternions, delta mush; Fascia too, if there is a character.
-std::vector<std::unique_ptr<Contender>> makeContenders(const RiggedModel& model,
+// Linear blending first, dual quaternions, delta mush; Fascia too, if there is a character.
+// `model` has all motions that will be shown.
+std::vector<std::unique_ptr<Contender>> makeContenders(std::shared_ptr<const RiggedModel> model,
                                                        const CharacterDef* character);
 
 }  // namespace fascia

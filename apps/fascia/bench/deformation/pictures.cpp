@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/geometry/visibility.h>
 #include <fascia/io/image.h>
-#include <fascia/measure/deformation.h>
 
 namespace fascia {
 namespace {
@@ -12,10 +12,10 @@ namespace {
 constexpr int kSide = 420, kGap = 6;  // pixels
 
 // Clay shows shape; red shows where the surface passes through itself.
-std::vector<Drawable> drawables(const RiggedModel& model,
+std::vector<Drawable> drawables(const RiggedModel& model, const Judge& judge,
                                 const std::vector<Eigen::Vector3f>& points) {
   std::vector<bool> crosses(model.triangles.size(), false);
-  for (const CrossingPair& pair : findCrossings(model.triangles, points))
+  for (const CrossingPair& pair : judge.crossingsOf(points))
     crosses[pair.first] = crosses[pair.second] = true;
   std::vector<Drawable> parts(2);
   for (Drawable& part : parts) {
@@ -31,40 +31,79 @@ std::vector<Drawable> drawables(const RiggedModel& model,
   return parts;
 }
 
+// Directions spread evenly over a sphere, from above to a little below the horizon (a spiral of
+// Fibonacci's): people look at things from there.
+std::vector<Vec3> directions() {
+  constexpr int kCount = 120;
+  constexpr double kLowest = -0.35;
+  const double golden = kPi * (3 - std::sqrt(5.0));
+  std::vector<Vec3> all;
+  for (int i = 0; i < kCount; ++i) {
+    const double y = 1 - (1 - kLowest) * (i + 0.5) / kCount;
+    const double r = std::sqrt(1 - y * y);
+    all.emplace_back(r * std::cos(golden * i), y, r * std::sin(golden * i));
+  }
+  return all;
+}
+
 }  // namespace
 
-BendPictures::BendPictures(const RiggedModel& model, const Hinge& hinge)
-    : model_(model), hinge_(hinge), region_(regionOf(model, hinge)) {}
+PosePictures::PosePictures(const RiggedModel& model, const JointPose& pose,
+                           const HingeRegion& region, const Judge& judge)
+    : model_(model), pose_(pose), region_(region), judge_(judge) {}
 
-// Along the hinge's axis, from outside, above or in front rather than through the body.
-Camera BendPictures::camera(const std::vector<Eigen::Vector3f>& points) const {
-  Vec3 mean = Vec3::Zero();
-  for (const std::uint32_t p : region_.pointsNearJoint) mean += points[p].cast<double>();
-  mean /= std::max(1.0, static_cast<double>(region_.pointsNearJoint.size()));
-  double reach_m = 0;
-  for (const std::uint32_t p : region_.pointsNearJoint)
-    reach_m = std::max(reach_m, (points[p].cast<double>() - mean).norm());
-  const Vec3 outside(1, 0.5, 0.25);
-  const Vec3 from = hinge_.axis.dot(outside) < 0 ? Vec3(-hinge_.axis) : hinge_.axis;
+// Where the product of two things is largest: how much of the joint is seen, and how much of the
+// turn (a bend along its axis, a twist across it). A little of the first is better than nothing.
+Vec3 PosePictures::bestSide(const std::vector<Eigen::Vector3f>& points) const {
+  std::vector<bool> isNear(points.size(), false), chosen;
+  for (const std::uint32_t p : region_.pointsNearJoint) isNear[p] = true;
+  for (const auto& t : model_.triangles)
+    chosen.push_back(isNear[t[0]] && isNear[t[1]] && isNear[t[2]]);
+  Vec3 best = Vec3::UnitZ();
+  double most = 0;
+  for (const Vec3& towards : directions()) {
+    const double along = std::abs(towards.dot(pose_.axis));
+    const double seen = pose_.twist ? std::sqrt(std::max(0.0, 1 - along * along)) : along;
+    const double front = 1 + 0.1 * towards.z();  // of equal sides the one that people know
+    const double score =
+        front * seen * seen * visibleArea(model_.triangles, points, chosen, towards);
+    if (score > most) most = score, best = towards;
+  }
+  return best;
+}
+
+Camera PosePictures::camera(const std::vector<Eigen::Vector3f>& points) const {
+  const std::vector<std::uint32_t>& near = region_.pointsNearJoint;
+  Vec3 mean = model_.joints[pose_.joint].rest_world.translation_m;
+  std::vector<double> distance;
+  if (!near.empty()) mean.setZero();
+  for (const std::uint32_t p : near)
+    mean += points[p].cast<double>() / static_cast<double>(near.size());
+  for (const std::uint32_t p : near) distance.push_back((points[p].cast<double>() - mean).norm());
+  // Without the farthest tenth: a few stray weights at a foot would make a knee tiny.
+  std::sort(distance.begin(), distance.end());
+  const double most_m = distance.empty() ? 0 : distance[distance.size() * 9 / 10];
   Camera camera;
   camera.target_m = mean;
+  const double reach_m = std::max(1.15 * most_m, 0.03 * model_.size_m());
   const double distance_m = 1.5 * reach_m / std::tan(0.5 * camera.vertical_fov_rad);
-  camera.eye_m = mean + distance_m * from;
-  if (std::abs(from.y()) > 0.8) camera.up = -Vec3::UnitZ();
+  const Vec3 from = bestSide(points);
+  camera.eye_m = camera.target_m + distance_m * from;
+  if (std::abs(from.y()) > 0.95) camera.up = -Vec3::UnitZ();
   return camera;
 }
 
-void BendPictures::add(Renderer& renderer, const std::vector<Eigen::Vector3f>& points) {
+void PosePictures::add(Renderer& renderer, const std::vector<Eigen::Vector3f>& points) {
   if (pictures_.empty()) camera_ = camera(points);
   Scene scene;
   scene.camera = camera_;
-  scene.drawables = drawables(model_, points);
+  scene.drawables = drawables(model_, judge_, points);
   const Vec3 back = camera_.eye_m - camera_.target_m;
   scene.studio.azimuth_rad = static_cast<float>(std::atan2(back.x(), back.z()));
   pictures_.push_back(renderer.render(scene, kSide, kSide));
 }
 
-void BendPictures::write(const std::string& path) const {
+void PosePictures::write(const std::string& path) const {
   Image row;
   const int count = static_cast<int>(pictures_.size());
   row.width = count * kSide + (count - 1) * kGap;
