@@ -32,6 +32,21 @@ std::size_t crossingTrianglePairs(TriangleList triangles, PointList points);
 // How many of `now` are not in `before`; both increasing.
 std::size_t newCrossings(std::span<const CrossingPair> before, std::span<const CrossingPair> now);
 
+// Surfaces nearer than this share of their size touch (new_crossings.cpp): a fifth of a millimetre
+// on a person. A larger one would forgive thin clothes that a body comes through; a smaller one
+// counts what only rounding makes of shells that lie on each other.
+inline constexpr double kTouching = 1e-4;
+
+// The crossings of a pose that are not those of its rest shape; increasing. Shells that lie on each
+// other at rest would cross and part again by rounding, so that a pair is no crossing
+// - if it has one at rest (`atRest`: findCrossings of `rest`);
+// - if two corners lie on one place (within the tolerance) at rest and still do: as triangles that
+//   share a point;
+// - if it lies within the tolerance at rest and a translation of no more than that parts it again.
+std::vector<CrossingPair> newCrossings(TriangleList triangles, PointList rest,
+                                       std::span<const CrossingPair> atRest, PointList points,
+                                       double tolerance_m);
+
 // --- Stretch (edge_stretch.cpp)
 
 // Largest and 99th percentile of edge length over rest length, each edge once. Edges without rest
@@ -40,6 +55,44 @@ struct EdgeStretch {
   double largest = 1, percentile99 = 1;
 };
 EdgeStretch edgeStretch(TriangleList triangles, PointList rest, PointList points);
+
+// --- Lumps (lumpiness.cpp)
+
+// What lumpiness() needs of a rest shape, found once. A point's detail is x − mean of its
+// neighbours: the umbrella Laplacian (Taubin 1995). Points on open edges and with fewer than three
+// neighbours have none.
+class RestDetail {
+ public:
+  RestDetail(TriangleList triangles, PointList rest);
+  std::size_t pointCount() const { return first_.size() - 1; }
+  bool has(std::size_t point) const { return edge_m_[point] > 0; }
+  // |n · (Rᵀ d' − d)| / e of one point that has detail: d at rest, d' now, n the rest normal, e the
+  // mean length of the point's edges at rest, R the rotation that fits the ring of neighbours at
+  // rest best to the one now.
+  double change(std::size_t point, PointList points) const;
+
+ private:
+  std::vector<std::uint32_t> first_, neighbour_;  // first_: one more than points
+  std::vector<Eigen::Vector3f> rest_, normal_;
+  std::vector<double> edge_m_;  // 0: no detail
+};
+
+// How much a surface's finest detail changes, in edge lengths: 0 for a rigid motion. It ranks
+// pictures as the eye does, which sees a lump or a crease that was not there at once. 0 where no
+// point has detail.
+struct Lumpiness {
+  double rms = 0, percentile99 = 0;
+};
+Lumpiness lumpiness(const RestDetail& detail, std::span<const std::uint32_t> which,
+                    PointList points);
+
+// --- Turned triangles (turned_triangles.cpp)
+
+// Triangles whose normal stands more than 90° off where the bones carry it: torn, or folded inside
+// out. `carried`: of every point the weighted sum of its bones' rotations; a triangle's is the sum
+// of its corners'. Triangles that are no numbers count too.
+std::size_t turnedTriangles(TriangleList triangles, PointList rest,
+                            std::span<const Eigen::Matrix3f> carried, PointList points);
 
 // --- Volume (occupied_volume.cpp)
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <fascia/measure/deformation.h>
+#include <fascia/measure/percentile.h>
 
 namespace fascia {
 namespace {
@@ -36,11 +37,8 @@ EdgeStretch edgeStretch(TriangleList triangles, PointList rest, PointList points
     stretch.push_back(std::isfinite(ratio) ? ratio : HUGE_VAL);
   }
   if (stretch.empty()) return {};
-  // The nearest rank: at least 99 % of all edges are no longer than this one.
-  const auto rank = static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(stretch.size())));
-  const auto nth = stretch.begin() + static_cast<std::ptrdiff_t>(rank - 1);
-  std::nth_element(stretch.begin(), nth, stretch.end());
-  return {*std::max_element(nth, stretch.end()), *nth};
+  const double largest = *std::max_element(stretch.begin(), stretch.end());
+  return {largest, percentile(stretch, 0.99)};
 }
 
 }  // namespace fascia
