@@ -1,5 +1,8 @@
 #include "compare/comparison.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include <fascia/base/parallel.h>
@@ -80,6 +83,8 @@ class Comparison {
         std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(length_s * rate_hz)));
     for (std::size_t i = 0; i < count; ++i)
       frames_.push_back(sides_.closestTo(start_s + static_cast<double>(i) / rate_hz));
+    // A recording may hold fewer frames than are looked at.
+    if (!options_.film()) frames_.erase(std::unique(frames_.begin(), frames_.end()), frames_.end());
   }
 
   std::vector<Moment> lookAtAll() {

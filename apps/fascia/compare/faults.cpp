@@ -51,11 +51,10 @@ Faults FaultFinder::find(PointList points, std::span<const Transform> motion) co
   addStretch(points, faults.per_triangle);
   faults.turned = findTurned(points, motion, faults.per_triangle);
   std::vector<bool> crosses(model_.triangles.size(), false);
-  for (const CrossingPair& pair : findCrossings(model_.triangles, points)) {
-    if (std::binary_search(restCrossings_.begin(), restCrossings_.end(), pair)) continue;
-    ++faults.crossings;
-    crosses[pair.first] = crosses[pair.second] = true;
-  }
+  const std::vector<CrossingPair> crossings = newCrossings(
+      model_.triangles, model_.points_m, restCrossings_, points, kTouching * model_.size_m());
+  for (const CrossingPair& pair : crossings) crosses[pair.first] = crosses[pair.second] = true;
+  faults.crossings = crossings.size();
   for (std::size_t t = 0; t < crosses.size(); ++t) {
     if (crosses[t]) faults.per_triangle[t] += kCrossing;
     faults.per_triangle[t] *= areas_[t];

@@ -11,9 +11,9 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 
 // Of the figure's size (the diagonal of its box).
-constexpr double kClusterRadius = 0.05;  // larger: neighbouring joints melt into one place
-constexpr double kSeenRadius = 0.085;    // larger: the fault is small in its picture
-constexpr double kLeastApart = 1.5;      // of kSeenRadius, so that no two pictures show the same
+constexpr double kClusterRadius = 0.04;  // larger: neighbouring joints melt into one place
+constexpr double kSeenRadius = 0.055;    // larger: the fault is small in its picture
+constexpr double kLeastApart = 2.0;      // of kSeenRadius, so that no two pictures show the same
 constexpr double kLeastShare = 0.12;     // of the worst place's badness: less is not worth a look
 constexpr std::size_t kMostTriangles = 3000;  // that are looked at; the worst ones
 constexpr std::size_t kMostRays = 80;         // per place, side and direction
@@ -157,7 +157,7 @@ void chooseViews(const RiggedModel& model, const Both<Points>& points, const Vec
       for (const double elevation_deg : kElevations_deg) {
         const Vec3 towards = direction(2 * kPi * a / kAzimuths, radians(elevation_deg));
         // What is seen from the other side is hard to find again on the whole figure.
-        const double kindred = 0.7 + 0.3 * towards.dot(preferred);
+        const double kindred = 0.55 + 0.45 * towards.dot(preferred);
         const double here = (1e-3 + onlooker.seen(place, towards)) * kindred;
         if (here > best) best = here, place.towards = towards;
       }

@@ -134,47 +134,46 @@ void Sheet::begin(Pixels& picture) const {
           kPaper);
 }
 
-void Sheet::addMain(const Both<Pixels>& pictures, const Both<std::vector<Mark>>& marks, double wipe,
+void Sheet::addMain(Both<Pixels>& pictures, const Both<std::vector<Mark>>& marks, double wipe,
                     Pixels& picture) const {
   const Cell& first = layout_.mains.front();
+  for (const Side side : kSides) addMarks(marks[side], pictures[side]);
   if (layout_.mains.size() == 2) {
     for (const Side side : kSides) {
       const Cell& cell = layout_.mains[side == Side::plain ? 0 : 1];
       place(pictures[side], cell.x, cell.y, picture);
-      addMarks(cell, marks[side], cell.x, cell.x + cell.width, picture);
       addName(cell, side, false, picture);
     }
     return;
   }
-  const int line =
-      first.x + static_cast<int>(std::lround(std::clamp(wipe, 0.0, 1.0) * first.width));
+  const int column = static_cast<int>(std::lround(std::clamp(wipe, 0.0, 1.0) * first.width));
   place(pictures.ours, first.x, first.y, picture);
-  placeColumns(pictures.plain, line - first.x, first.x, first.y, picture);
-  addMarks(first, marks.plain, first.x, first.x + first.width, picture);
+  placeColumns(pictures.plain, column, first.x, first.y, picture);
   const double thickness = std::max(2.0, 0.14 * layout_.text);
   fillBox(picture,
-          {line - 0.5 * thickness, static_cast<double>(first.y), thickness,
+          {first.x + column - 0.5 * thickness, static_cast<double>(first.y), thickness,
            static_cast<double>(first.height)},
           {{1, 1, 1}, 0.9f});
   addName(first, Side::plain, false, picture);
   addName(first, Side::ours, true, picture);
 }
 
-void Sheet::addMarks(const Cell& cell, std::span<const Mark> marks, int from, int to,
-                     Pixels& picture) const {
-  const double thickness = std::max(1.2, 0.09 * layout_.text);
+// A white ring with a dark edge reads on every fur; its number sits on it.
+void Sheet::addMarks(std::span<const Mark> marks, Pixels& picture) const {
+  const double thickness = std::max(1.3, 0.1 * layout_.text);
   for (std::size_t i = 0; i < marks.size(); ++i) {
-    const double x = cell.x + marks[i].x * cell.width, y = cell.y + marks[i].y * cell.height;
-    const double radius = marks[i].radius * cell.height;
-    if (x - radius < from || x + radius > to || y - radius < cell.y ||
-        y + radius > cell.y + cell.height)
-      continue;
-    drawRing(picture, x, y, radius, thickness, kAccent);
+    const double x = marks[i].x * picture.width, y = marks[i].y * picture.height;
+    const double radius = marks[i].radius * picture.height;
+    drawRing(picture, x, y, radius, 2.6 * thickness, {kPaper.color, 0.35f});
+    drawRing(picture, x, y, radius, thickness, kBright);
     if (marks.size() < 2) continue;
+    const std::string number = fmt::format("{}", i + 1);
     const TextStyle style{.size = 0.85 * layout_.text, .weight = kBold, .ink = kAccent};
-    const double out = radius + 0.5 * layout_.text;
-    drawText(picture, x + 0.71 * out - 0.1 * style.size, y - 0.71 * out + 0.1 * style.size,
-             fmt::format("{}", i + 1), style);
+    const double disc = 0.8 * style.size;
+    const double nx = std::clamp(x + 0.71 * radius, disc, picture.width - disc);
+    const double ny = std::clamp(y - 0.71 * radius, disc, picture.height - disc);
+    fillBox(picture, {nx - disc, ny - disc, 2 * disc, 2 * disc}, {kPaper.color, 0.95f}, disc);
+    drawText(picture, nx - 0.5 * textWidth(number, style), ny + 0.35 * style.size, number, style);
   }
 }
 

@@ -29,14 +29,14 @@ class Sheet {
   void setTitle(std::string title) { text_.title = std::move(title); }
 
   void begin(Pixels& picture) const;
-  void addMain(const Both<Pixels>& pictures, const Both<std::vector<Mark>>& marks, double wipe,
+  // Marks the pictures too.
+  void addMain(Both<Pixels>& pictures, const Both<std::vector<Mark>>& marks, double wipe,
                Pixels& picture) const;
   void addCloser(std::size_t place, Side side, const Pixels& piece, Pixels& picture) const;
   void addFigures(const Moment& moment, Pixels& picture) const;
 
  private:
-  void addMarks(const Cell& cell, std::span<const Mark> marks, int from, int to,
-                Pixels& picture) const;
+  void addMarks(std::span<const Mark> marks, Pixels& picture) const;
   void addName(const Cell& cell, Side side, bool right, Pixels& picture) const;
 
   Layout layout_;

@@ -11,6 +11,7 @@
 #include "film_parts.h"
 #include "flesh.h"
 #include "outputs.h"
+#include "progress.h"
 
 namespace fascia {
 namespace {
@@ -42,6 +43,8 @@ CharacterFile readSubject(const std::string& input, const Console& console) {
   CharacterFile file;
   const auto model = std::make_shared<const RiggedModel>(readRiggedModel(input));
   for (const std::string& note : model->notes) console.detail("note: " + note);
+  ProgressBar progress(console, "fitting flesh");
+  progress.update(0);  // how long it takes is not known
   file.def = fleshedCharacter(model);
   return file;
 }
