@@ -15,6 +15,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "flesh.h"
 #include "outputs.h"
 
 namespace fascia {
@@ -227,6 +228,17 @@ void addFlesh(CLI::App& program, Console& console) {
   console.addFlags(command);
   command.footer(kFooter);
   command.callback([options, &console] { flesh(*options, console); });
+}
+
+CharacterDef fleshedCharacter(std::shared_ptr<const RiggedModel> model) {
+  FleshFit fit = fitFlesh(*model);
+  CharacterDef def;
+  def.name = model->name;
+  def.skeleton = std::move(fit.skeleton);
+  def.flesh = std::move(fit.flesh);
+  def.skin = skinFor(*model);
+  def.rig = RigDef{.file = model->sourceFile, .model = std::move(model)};
+  return def;
 }
 
 }  // namespace fascia

@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
   program.failure_message(CLI::FailureMessage::simple);
   fascia::addBake(program, console);
   fascia::addRender(program, console);
+  fascia::addCompare(program, console);
   fascia::addCheck(program, console);
   fascia::addInfo(program, console);
   fascia::addFlesh(program, console);

@@ -97,19 +97,6 @@ void render(RenderOptions& options, const Console& console) {
   film->report({options.output}, console);
 }
 
-// A CLI11 check out of a parser that throws.
-template <class Parser>
-std::function<std::string(const std::string&)> parsedBy(Parser parse) {
-  return [parse](const std::string& text) -> std::string {
-    try {
-      parse(text);
-      return {};
-    } catch (const Error& error) {
-      return error.what();
-    }
-  };
-}
-
 void addPictureOptions(CLI::App& command, RenderOptions& options) {
   command.add_option("--time", options.time_s, "Moment of a picture, in seconds (default: 0)")
       ->type_name("SECONDS")

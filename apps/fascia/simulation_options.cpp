@@ -98,10 +98,13 @@ std::string sizeProblem(const std::string& text, int low, int high) {
 
 Character prepareCharacter(const std::string& path, SimulationOptions& options,
                            const Console& console) {
+  return prepareCharacter(readCharacterFile(path), options, console);
+}
+
+Character prepareCharacter(CharacterFile file, SimulationOptions& options, const Console& console) {
   if (!options.joint_map.empty() && !isMotionFile(options.motion))
     throw Error("--joint-map belongs to a motion from a file, such as --motion walk.bvh");
   if (options.seed != 0) throw Error("--seed is for scenes; a character has nothing to scatter");
-  CharacterFile file = readCharacterFile(path);
   if (isMotionFile(options.motion)) {
     if (!file.def.rig)
       throw Error("the motion '" + options.motion + "' needs a character with a rig");

@@ -7,6 +7,7 @@
 
 #include <fascia/character/character.h>
 #include <fascia/character/recording.h>
+#include <fascia/io/character_file.h>
 
 #include "console.h"
 
@@ -39,11 +40,25 @@ std::string sizeProblem(const std::string& text, int low, int high);
 
 // A CLI11 check whose range stays out of the help.
 CLI::Validator numberIn(double low, double high);
+// … out of a parser that throws.
+template <class Parser>
+std::function<std::string(const std::string&)> parsedBy(Parser parse) {
+  return [parse](const std::string& text) -> std::string {
+    try {
+      parse(text);
+      return {};
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+}
 
 // Reads and builds a character for these options. A motion capture file among them is put onto its
 // rig first; they then name the motion that came of it.
 Character prepareCharacter(const std::string& path, SimulationOptions& options,
                            const Console& console);
+// The same of a file that is read already.
+Character prepareCharacter(CharacterFile file, SimulationOptions& options, const Console& console);
 
 // The index of the motion to use; -1 = the character has none. Throws for an unknown name.
 int chooseMotion(const Character& character, const std::string& name);

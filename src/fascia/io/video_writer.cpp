@@ -1,5 +1,6 @@
 #include <fascia/io/video_writer.h>
 
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -16,6 +17,12 @@ std::string decimal(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
+}
+
+bool isGif(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".gif";
 }
 
 [[noreturn]] void fail(const std::string& file, const std::string& message) {
@@ -47,16 +54,37 @@ class VideoWriter::Encoder final : public Sink {
   }
 
   static std::vector<std::string> arguments(int width, int height, const VideoOptions& options,
-                                            const std::string& output) {
-    return {"-nostdin", "-loglevel", "error", "-y",
-            // in
-            "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
-            std::to_string(width) + "x" + std::to_string(height), "-framerate",
-            decimal(options.frame_rate_hz), "-i", "pipe:0",
-            // out: H.264 with 4:2:0 colour needs even sizes
-            "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-pix_fmt", "yuv420p",
-            "-crf", std::to_string(options.crf), "-movflags", "+faststart", "-f", "mp4",
-            "file:" + output};
+                                            const std::string& output, bool gif) {
+    std::vector<std::string> all{"-nostdin", "-loglevel", "error", "-y",
+                                 // in
+                                 "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
+                                 std::to_string(width) + "x" + std::to_string(height), "-framerate",
+                                 decimal(options.frame_rate_hz), "-i", "pipe:0"};
+    const std::vector<std::string> out = gif ? gifArguments() : mp4Arguments(options.crf);
+    all.insert(all.end(), out.begin(), out.end());
+    all.push_back("file:" + output);
+    return all;
+  }
+
+  // H.264 with 4:2:0 colour needs even sizes.
+  static std::vector<std::string> mp4Arguments(int crf) {
+    return {"-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+            "-c:v",      "libx264",
+            "-pix_fmt",  "yuv420p",
+            "-crf",      std::to_string(crf),
+            "-movflags", "+faststart",
+            "-f",        "mp4"};
+  }
+  // One palette for the whole film, made of all of its colours. Ordered dithering keeps still what
+  // stands still, and so the file small.
+  static std::vector<std::string> gifArguments() {
+    return {"-filter_complex",
+            "split[seen][kept];[seen]palettegen=stats_mode=full[palette];"
+            "[kept][palette]paletteuse=dither=bayer:bayer_scale=4",
+            "-loop",
+            "0",
+            "-f",
+            "gif"};
   }
 
   void add(const Image& frame) override {
@@ -97,7 +125,7 @@ class VideoWriter::PngSequence final : public Sink {
     }
     hint = "the program " + options.encoder + " was not found, so the frames are PNG files in " +
            folder_ + "; to join them: ffmpeg -framerate " + decimal(options.frame_rate_hz) +
-           " -i " + folder_ + "/%05d.png -pix_fmt yuv420p " + path;
+           " -i " + folder_ + "/%05d.png " + (isGif(path) ? "" : "-pix_fmt yuv420p ") + path;
   }
   ~PngSequence() override {
     std::error_code ignored;
@@ -135,7 +163,7 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height,
   if (!fs::is_directory(folder, error)) fail(path, "the folder is missing");
   const std::string temporary = path + ".tmp";
   if (std::optional<ChildProcess> process = ChildProcess::start(
-          options.encoder, Encoder::arguments(width, height, options, temporary))) {
+          options.encoder, Encoder::arguments(width, height, options, temporary, isGif(path)))) {
     sink_ = std::make_unique<Encoder>(std::move(*process), path, temporary);
   } else {
     sink_ = std::make_unique<PngSequence>(path, options);

@@ -13,9 +13,10 @@ struct VideoOptions {
   std::string encoder = "ffmpeg";  // the program, looked for in PATH
 };
 
-// H.264 in MP4 through the ffmpeg program. Where there is none: numbered PNG files in a folder
-// named after the video, and a hint how to join them. The video appears only when finish()
-// succeeds.
+// H.264 in MP4, or a GIF that repeats for ever if the path ends in .gif, through the ffmpeg
+// program. A GIF's frames are kept in ffmpeg's memory until all of its colours are known. Where
+// there is none: numbered PNG files in a folder named after the video, and a hint how to join them.
+// The video appears only when finish() succeeds.
 class VideoWriter {
  public:
   VideoWriter(const std::string& path, int width, int height, const VideoOptions& options = {});
