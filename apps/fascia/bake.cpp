@@ -13,6 +13,7 @@
 #include <fascia/io/stats_writer.h>
 
 #include "commands.h"
+#include "grid_bake.h"
 #include "interrupt.h"
 #include "motion_file.h"
 #include "outputs.h"
@@ -81,7 +82,14 @@ void writeOutput(const Character& character, const Recording& recording, const s
     written.insert(written.end(), report.files.begin(), report.files.end());
     return;
   }
-  if (ending == ".glb") writeGlb(character, recording, path);
+  if (ending == ".glb" && isSmallGridBake(character, options.rig)) {
+    const std::span<const Recording> all(&recording, 1);
+    const GridBakeReport report = writeGridBake(character, all, options.rig, path, console);
+    for (Json& bake : describe(report, all, path, options.rig, console))
+      bakes.push_back(std::move(bake));
+  } else if (ending == ".glb") {
+    writeGlb(character, recording, path);
+  }
   if (ending == ".pc2") writePc2(recording, path);
   if (ending == ".mdd") writeMdd(recording, path);
   if (ending == ".fcache") writeCache(character.def(), recording, path);
@@ -111,7 +119,10 @@ void bake(BakeOptions& options, const Console& console) {
   const std::string motionFile =
       isMotionFile(options.simulation.motion) ? options.simulation.motion : std::string();
   const Character character = prepareCharacter(options.file, options.simulation, console);
-  checkRigBake(character, options.rig, options.outputs);
+  if (character.def().rig)
+    checkRigBake(character, options.rig, options.outputs);
+  else
+    checkGridBake(character, options.rig, options.outputs);
   std::vector<std::string> files;
   for (const std::string& output : options.outputs)
     for (const std::string& file : filesOf(character, options.rig, output)) files.push_back(file);

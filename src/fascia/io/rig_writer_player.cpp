@@ -177,11 +177,8 @@ void RigPlayer::pose(double time_s, std::vector<Eigen::Vector3f>& vertices) cons
   }
 }
 
-BakeError playedError(const RigClip& clip, const std::string& path, int animation, double start_s,
-                      std::size_t ownTargets) {
-  const GltfDocument document = GltfDocument::read(path);
-  const RigPlayer player(document, clip.model.parts, animation, clip.scale, ownTargets);
-  const auto& frames = clip.recording.frames;
+BakeError playedError(const RigPlayer& player, double start_s,
+                      const std::vector<Recording::Frame>& frames) {
   std::vector<double> sum(frames.size(), 0.0), largest(frames.size(), 0.0);
   parallelFor(frames.size(), [&](std::size_t f) {
     std::vector<Eigen::Vector3f> vertices;
@@ -197,8 +194,15 @@ BakeError playedError(const RigClip& clip, const std::string& path, int animatio
     total += sum[f];
     worst = std::max(worst, largest[f]);
   }
-  const auto entries = static_cast<double>(frames.size() * clip.model.vertices.size());
+  const auto entries = static_cast<double>(frames.size() * frames.front().skin_m.size());
   return {1e3 * std::sqrt(total / entries), 1e3 * std::sqrt(worst)};
+}
+
+BakeError playedError(const RigClip& clip, const std::string& path, int animation, double start_s,
+                      std::size_t ownTargets) {
+  const GltfDocument document = GltfDocument::read(path);
+  const RigPlayer player(document, clip.model.parts, animation, clip.scale, ownTargets);
+  return playedError(player, start_s, clip.recording.frames);
 }
 
 }  // namespace fascia

@@ -57,6 +57,10 @@ class RigPlayer {
   std::size_t ownTargets_;
 };
 
+// How far what a player shows is from recorded frames; start_s: the first one's, on its clock.
+BakeError playedError(const RigPlayer& player, double start_s,
+                      const std::vector<Recording::Frame>& frames);
+
 // Reads a file that was written for a clip and compares every frame; start_s: the recording's first
 // frame on the animation's clock.
 BakeError playedError(const RigClip& clip, const std::string& path, int animation, double start_s,
