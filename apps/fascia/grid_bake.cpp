@@ -16,6 +16,7 @@ namespace {
 // character that is a thousand pixels high; but no more than games like.
 constexpr double kTolerance = 5e-4;  // of the height
 constexpr int kMostTargets = 32;
+constexpr int kMostHelpers = 128;
 
 std::string wayOf(const RigBakeOptions& options) {
   return options.as.empty() ? "morphs" : options.as;
@@ -39,36 +40,20 @@ bool isSmallGridBake(const Character& character, const RigBakeOptions& options) 
   return character.skin() && character.skin()->isGrid() && wayOf(options) != "cache";
 }
 
-void checkGridBake(const Character& character, const RigBakeOptions& options,
-                   const std::vector<std::string>& outputs) {
-  const bool anyGlb = std::any_of(outputs.begin(), outputs.end(),
-                                  [](const std::string& path) { return endingOf(path) == ".glb"; });
-  for (const RigBakeOptions::Given& g : options.given()) {
-    Issue issue;
-    if (!character.skin())
-      issue.message = g.option + " says how a skin moves, and this character has none";
-    else if (!anyGlb)
-      issue.message = g.option + " says how a .glb moves, and none is to be written";
-    else if (!g.way.empty() && g.way != wayOf(options))
-      issue.message = g.option + " belongs to --as " + g.way + ", not to --as " + wayOf(options);
-    else
-      continue;
-    issue.hint = "leave " + g.option + " out";
-    throw Error(std::move(issue));
-  }
-}
-
-GridBakeReport writeGridBake(const Character& character, std::span<const Recording> recordings,
+GridBakeReport writeGridBake(const Character& character,
+                             std::span<const Recording* const> recordings,
                              const RigBakeOptions& options, const std::string& path,
                              const Console& console) {
   GridBakeOptions fit;
   fit.way = wayOf(options) == "bones" ? GridWay::bones : GridWay::morphs;
   fit.bones.helperBones = options.helpers;
   fit.bones.influences = options.influences;
+  fit.bones.tolerance_m = 0.01 * options.tolerance_percent * heightOf_m(*recordings.front());
+  fit.bones.mostHelpers = std::max(options.helpers, kMostHelpers);
   // A number of targets that was asked for is made, however small the error is before.
   const bool asked = isGiven(options, "--targets");
   fit.morphs.targets = asked ? options.targets : kMostTargets;
-  fit.morphs.tolerance_m = asked ? 0 : kTolerance * heightOf_m(recordings.front());
+  fit.morphs.tolerance_m = asked ? 0 : kTolerance * heightOf_m(*recordings.front());
   fit.morphs.sparsity = 0.01;
   ProgressBar progress(console, "fitting the skin");
   fit.bones.progress = [&](double share) {
@@ -77,31 +62,30 @@ GridBakeReport writeGridBake(const Character& character, std::span<const Recordi
   return writeGridGlb(character, recordings, fit, path);
 }
 
-Json::List describe(const GridBakeReport& report, std::span<const Recording> recordings,
-                    const std::string& path, const RigBakeOptions& options,
-                    const Console& console) {
-  const double percent = 0.1 / std::max(heightOf_m(recordings.front()), 1e-9);
+Json describe(const GridBakeReport& report, std::span<const Recording* const> recordings,
+              const RigBakeOptions& options, const std::string& path, const Console& console) {
+  const double percent = 0.1 / std::max(heightOf_m(*recordings.front()), 1e-9);
   console.say(fmt::format("{}: {:.0f} kB, {} {}", path, 1e-3 * static_cast<double>(report.bytes),
                           report.added,
                           wayOf(options) == "bones" ? "helper bones" : "morph targets"));
-  Json::List list;
+  Json::List motions;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     const BakeError& error = report.errors[r];
-    const std::string& motion = recordings[r].motion;
+    const std::string& motion = recordings[r]->motion;
     console.say(fmt::format(
         "  {}: error {:.2g} mm RMS, {:.2g} mm at most ({:.2g} % and {:.2g} % of the height)",
         motion.empty() ? "rest" : motion, error.rms_mm, error.max_mm, percent * error.rms_mm,
         percent * error.max_mm));
-    list.push_back(Json::Object{{"file", path},
-                                {"motion", motion},
-                                {"added", static_cast<int>(report.added)},
-                                {"bytes", static_cast<double>(report.bytes)},
-                                {"rms_mm", error.rms_mm},
-                                {"max_mm", error.max_mm},
-                                {"rms_percent", percent * error.rms_mm},
-                                {"max_percent", percent * error.max_mm}});
+    motions.push_back(Json::Object{{"motion", motion},
+                                   {"rms_mm", error.rms_mm},
+                                   {"max_mm", error.max_mm},
+                                   {"rms_percent", percent * error.rms_mm},
+                                   {"max_percent", percent * error.max_mm}});
   }
-  return list;
+  return Json::Object{{"file", path},
+                      {"added", static_cast<int>(report.added)},
+                      {"bytes", static_cast<double>(report.bytes)},
+                      {"motions", std::move(motions)}};
 }
 
 }  // namespace fascia

@@ -15,19 +15,16 @@ namespace fascia {
 // How a character whose skin is a grid becomes a .glb: morphs if nothing is said, bones, or cache
 // (every vertex of every frame). `options` are those that rigs have, too.
 
-// Throws Error if the options ask for what such a character, or none of the outputs, can be.
-void checkGridBake(const Character& character, const RigBakeOptions& options,
-                   const std::vector<std::string>& outputs);
-
 // Whether it becomes one small file of all motions; otherwise see writeGlb.
 bool isSmallGridBake(const Character& character, const RigBakeOptions& options);
 
-GridBakeReport writeGridBake(const Character& character, std::span<const Recording> recordings,
+GridBakeReport writeGridBake(const Character& character,
+                             std::span<const Recording* const> recordings,
                              const RigBakeOptions& options, const std::string& path,
                              const Console& console);
 
 // Says how faithful each motion is, for a person; for a machine the same.
-Json::List describe(const GridBakeReport& report, std::span<const Recording> recordings,
-                    const std::string& path, const RigBakeOptions& options, const Console& console);
+Json describe(const GridBakeReport& report, std::span<const Recording* const> recordings,
+              const RigBakeOptions& options, const std::string& path, const Console& console);
 
 }  // namespace fascia

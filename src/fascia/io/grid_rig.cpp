@@ -108,14 +108,14 @@ GridRig gridRigOf(const Character& character) {
 }
 
 GridFrames gridFramesOf(const Character& character, const GridRig& rig,
-                        std::span<const Recording> recordings) {
+                        std::span<const Recording* const> recordings) {
   const Skeleton& skeleton = character.skeleton();
   Posture posture = skeleton.restPosture();
   PosedSkeleton posed;
   GridFrames out;
-  for (const Recording& recording : recordings) {
-    check(rig, recording);
-    for (const Recording::Frame& frame : recording.frames) {
+  for (const Recording* recording : recordings) {
+    check(rig, *recording);
+    for (const Recording::Frame& frame : recording->frames) {
       if (frame.posture.size() != posture.values.size())
         throw Error("the recording is of another character");
       posture.values = frame.posture;

@@ -30,6 +30,6 @@ struct GridFrames {
 };
 // Throws Error if a recording is not of this character, or holds no proper frames.
 GridFrames gridFramesOf(const Character& character, const GridRig& rig,
-                        std::span<const Recording> recordings);
+                        std::span<const Recording* const> recordings);
 
 }  // namespace fascia

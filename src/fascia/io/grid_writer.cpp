@@ -31,7 +31,7 @@ struct BoneTrack {
 
 class GridWriter {
  public:
-  GridWriter(const Character& character, std::span<const Recording> recordings,
+  GridWriter(const Character& character, std::span<const Recording* const> recordings,
              const GridBakeOptions& options)
       : character_(character),
         recordings_(recordings),
@@ -56,7 +56,7 @@ class GridWriter {
     int next = 0;
     for (std::size_t r = 0; r < recordings_.size(); ++r) {
       animationOf_.push_back(animations_[r].channels.empty() ? -1 : next++);
-      named.push_back({recordings_[r].motion, std::move(animations_[r])});
+      named.push_back({recordings_[r]->motion, std::move(animations_[r])});
     }
     return finishGlb(character_.def().name, nodes_.roots(), std::move(named), glb_);
   }
@@ -72,7 +72,7 @@ class GridWriter {
     std::vector<BakeError> out;
     for (std::size_t r = 0; r < recordings_.size(); ++r) {
       const RigPlayer player(document, {&part, 1}, animationOf_[r], 1, basis_.targets.size());
-      out.push_back(playedError(player, 0, recordings_[r].frames));
+      out.push_back(playedError(player, 0, recordings_[r]->frames));
     }
     return out;
   }
@@ -80,7 +80,9 @@ class GridWriter {
  private:
   void fit() {
     DecompositionOptions bones = options_.bones;
-    if (options_.way == GridWay::morphs) bones.helperBones = 0;
+    for (const Recording* r : recordings_) bones.motionFrames.push_back(r->frames.size());
+    // Where morph targets follow, helpers would cost more than targets that do as much.
+    if (options_.way == GridWay::morphs) bones.helperBones = bones.mostHelpers = 0;
     skinning_ = decomposeSkinning(rig_.points_m, rig_.triangles, rig_.weights, frames_.bones,
                                   frames_.points, bones);
     if (options_.way == GridWay::bones) return;
@@ -159,11 +161,11 @@ class GridWriter {
     }
     std::size_t first = 0;
     for (std::size_t r = 0; r < recordings_.size(); ++r) {
-      const std::size_t count = recordings_[r].frames.size();
+      const std::size_t count = recordings_[r]->frames.size();
       PlaceTrack own;
       for (std::size_t f = first; f < first + count; ++f) own.add(track.frames[f]);
       if (keys.translations || keys.rotations)
-        addTracks(timesOf(recordings_[r]), own, node, glb_, animations_[r], keys);
+        addTracks(timesOf(*recordings_[r]), own, node, glb_, animations_[r], keys);
       first += count;
     }
   }
@@ -199,17 +201,17 @@ class GridWriter {
     std::size_t first = 0;
     for (std::size_t r = 0; r < recordings_.size(); ++r) {
       std::vector<float> values;
-      const std::size_t count = recordings_[r].frames.size();
+      const std::size_t count = recordings_[r]->frames.size();
       for (std::size_t f = first; f < first + count; ++f)
         values.insert(values.end(), basis_.weights[f].begin(), basis_.weights[f].end());
-      animations_[r].add(glb_.addTimes(timesOf(recordings_[r])), glb_.addShares(values), skinNode_,
+      animations_[r].add(glb_.addTimes(timesOf(*recordings_[r])), glb_.addShares(values), skinNode_,
                          "weights");
       first += count;
     }
   }
 
   const Character& character_;
-  std::span<const Recording> recordings_;
+  std::span<const Recording* const> recordings_;
   const GridBakeOptions& options_;
   GridRig rig_;
   GridFrames frames_;
@@ -226,18 +228,19 @@ class GridWriter {
 };
 
 // Two animations of one name could not be told apart.
-void checkNames(std::span<const Recording> recordings) {
+void checkNames(std::span<const Recording* const> recordings) {
   if (recordings.empty()) throw Error("there is no recording to be exported");
   std::set<std::string> names;
-  for (const Recording& recording : recordings) {
-    if (!names.insert(recording.motion).second)
-      throw Error("the motion '" + recording.motion + "' is there twice");
+  for (const Recording* recording : recordings) {
+    if (!names.insert(recording->motion).second)
+      throw Error("the motion '" + recording->motion + "' is there twice");
   }
 }
 
 }  // namespace
 
-GridBakeReport writeGridGlb(const Character& character, std::span<const Recording> recordings,
+GridBakeReport writeGridGlb(const Character& character,
+                            std::span<const Recording* const> recordings,
                             const GridBakeOptions& options, const std::string& path) {
   checkNames(recordings);
   GridWriter writer(character, recordings, options);

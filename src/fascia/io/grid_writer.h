@@ -31,7 +31,8 @@ struct GridBakeReport {
 // the weights, bones and targets. At rest it shows the rest posture. The files play by the core of
 // glTF 2.0 alone. Errors are those of the written file, read back and played. Written whole or not
 // at all. Throws Error.
-GridBakeReport writeGridGlb(const Character& character, std::span<const Recording> recordings,
+GridBakeReport writeGridGlb(const Character& character,
+                            std::span<const Recording* const> recordings,
                             const GridBakeOptions& options, const std::string& path);
 
 }  // namespace fascia
