@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -13,12 +12,13 @@
 #include <fascia/io/stats_writer.h>
 
 #include "commands.h"
+#include "grid_bake.h"
 #include "interrupt.h"
-#include "motion_file.h"
 #include "outputs.h"
 #include "rig_bake.h"
 #include "scene_bake.h"
 #include "simulation_options.h"
+#include "takes.h"
 
 namespace fascia {
 namespace {
@@ -37,9 +37,15 @@ A character on a rig (see 'fascia flesh') becomes its old file with the motion c
   morphs   morph targets on top of the rig's own skinning
   cache    no skeleton; every vertex of every frame in a .pc2 and a .mdd beside the .glb
 
+A character whose skin is a grid becomes a small .glb of one or more motions, by --as:
+  morphs   weights for its joints and morph targets on top (what it does if nothing is said)
+  bones    weights for its joints and helper bones
+  cache    every vertex of every frame, a morph target each
+
 Examples:
   fascia bake examples/penguin.fascia.json -o penguin.glb
   fascia bake fox.fascia.json --motion Gallop -o fox_alive.glb --as bones --helpers 30
+  fascia bake examples/penguin.fascia.json --motions all --targets 32 -o penguin.glb
   fascia bake human.fascia.json --motion walk.bvh -o walk.glb
   fascia bake examples/sky-hook.fascia.json --seed 7 -o sky-hook.glb -o sky-hook.fcache
   fascia bake examples/penguin.fascia.json --motion hop -o hop.glb -o hop.fcache --stats hop.json
@@ -49,86 +55,132 @@ struct BakeOptions {
   std::string file;  // a character or scene
   std::vector<std::string> outputs;
   std::string stats;
+  TakeOptions takes;
   SimulationOptions simulation;
   RigBakeOptions rig;
 };
 
-// Says how faithful a bake is, for a person; for a machine the same.
-Json describe(const RigBakeReport& report, const RiggedModel& rig, const std::string& path,
-              const Console& console) {
-  const double percent = 0.1 / std::max(rig.height_m(), 1e-9);  // of the height, per millimetre
-  const BakeError& error = report.error;
-  console.say(fmt::format(
-      "{}: {} added; error {:.3g} mm RMS, {:.3g} mm at most ({:.2g} % and {:.2g} % of the height)",
-      path, report.added, error.rms_mm, error.max_mm, percent * error.rms_mm,
-      percent * error.max_mm));
-  return Json::Object{{"file", path},
-                      {"added", static_cast<int>(report.added)},
-                      {"rms_mm", error.rms_mm},
-                      {"max_mm", error.max_mm},
-                      {"rms_percent", percent * error.rms_mm},
-                      {"max_percent", percent * error.max_mm}};
+// What a bake has made so far.
+struct Made {
+  std::vector<std::string> written;
+  Json::List bakes;
+};
+
+// One file for all motions: what only a .glb with a skeleton can be, and not as a cache.
+bool holdsAll(const Cast& cast, const RigBakeOptions& options, const std::string& path) {
+  if (endingOf(path) != ".glb") return false;
+  return cast.def.rig ? options.as != "cache" : isSmallGridBake(cast.character, options);
 }
 
-// One file, or several that belong together; fills in what was written.
-void writeOutput(const Character& character, const Recording& recording, const std::string& path,
-                 const BakeOptions& options, const Console& console,
-                 std::vector<std::string>& written, Json::List& bakes) {
+void writeRig(const Cast& cast, std::span<const Shot> shots, const std::string& path,
+              const BakeOptions& options, const Console& console, Made& made) {
+  const RigBakeReport report = writeRigBake(cast.def, shots, options.rig, path, console);
+  made.bakes.push_back(describe(report, options.rig, *cast.def.rig->model, path, console));
+  made.written.insert(made.written.end(), report.files.begin(), report.files.end());
+}
+
+void writeGrid(const Cast& cast, std::span<const Shot> shots, const std::string& path,
+               const BakeOptions& options, const Console& console, Made& made) {
+  std::vector<const Recording*> recordings;
+  for (const Shot& shot : shots) recordings.push_back(&shot.recording);
+  const GridBakeReport report =
+      writeGridBake(cast.character, recordings, options.rig, path, console);
+  made.bakes.push_back(describe(report, recordings, options.rig, path, console));
+  made.written.push_back(path);
+}
+
+// One motion in a file of its own, or in several that belong together.
+void writeMotion(const Cast& cast, const Shot& shot, const std::string& path,
+                 const BakeOptions& options, const Console& console, Made& made) {
   const std::string ending = endingOf(path);
-  if (ending == ".glb" && character.def().rig) {
-    const RigBakeReport report = writeRigBake(character, recording, options.rig, path, console);
-    bakes.push_back(describe(report, *character.def().rig->model, path, console));
-    written.insert(written.end(), report.files.begin(), report.files.end());
+  if (ending == ".glb" && cast.def.rig) {
+    writeRig(cast, {&shot, 1}, path, options, console, made);
     return;
   }
-  if (ending == ".glb") writeGlb(character, recording, path);
-  if (ending == ".pc2") writePc2(recording, path);
-  if (ending == ".mdd") writeMdd(recording, path);
-  if (ending == ".fcache") writeCache(character.def(), recording, path);
-  written.push_back(path);
+  if (ending == ".glb") writeGlb(cast.character, shot.recording, path);
+  if (ending == ".pc2") writePc2(shot.recording, path);
+  if (ending == ".mdd") writeMdd(shot.recording, path);
+  if (ending == ".fcache") writeCache(cast.def, shot.recording, path);
+  made.written.push_back(path);
 }
 
-// What the character is made of.
-std::vector<std::string> inputsOf(const Character& character, const std::string& motionFile,
-                                  const BakeOptions& options) {
-  std::vector<std::string> out{options.file};
-  if (const std::optional<RigDef>& rig = character.def().rig)
-    out.push_back((std::filesystem::path(options.file).parent_path() / rig->file).string());
-  if (!motionFile.empty()) out.push_back(motionFile);
-  return out;
+void writeOutput(const Cast& cast, const std::vector<Shot>& shots, const std::string& path,
+                 const BakeOptions& options, const Console& console, Made& made) {
+  const std::size_t before = made.written.size();
+  if (holdsAll(cast, options.rig, path)) {
+    const auto write = cast.def.rig ? writeRig : writeGrid;
+    write(cast, shots, path, options, console, made);
+  } else {
+    for (std::size_t k = 0; k < shots.size(); ++k)
+      writeMotion(cast, shots[k], fileOf(path, cast.takes, k), options, console, made);
+  }
+  for (std::size_t i = before; i < made.written.size(); ++i)
+    console.say("wrote " + made.written[i]);
+}
+
+// Throws Error before any long work if a file would be overwritten.
+void checkFiles(const Cast& cast, const BakeOptions& options) {
+  std::vector<std::string> files;
+  for (const std::string& output : options.outputs) {
+    const std::size_t count = holdsAll(cast, options.rig, output) ? 1 : cast.takes.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::string path = count > 1 ? fileOf(output, cast.takes, k) : output;
+      for (const std::string& file : filesOf(cast.character, options.rig, path))
+        files.push_back(file);
+    }
+  }
+  if (!options.stats.empty())
+    for (std::size_t k = 1; k < cast.takes.size(); ++k)
+      files.push_back(fileOf(options.stats, cast.takes, k));
+  checkOverwriting(cast.inputs, files,
+                   options.stats.empty() ? "" : fileOf(options.stats, cast.takes, 0));
+}
+
+std::vector<Shot> shootAll(const Cast& cast, const BakeOptions& options, const Console& console) {
+  std::vector<Shot> shots;
+  for (const Take& take : cast.takes) {
+    if (interruptSignal() != 0) throw Interrupted{};
+    shots.push_back(shoot(cast, take, options.simulation, console));
+    if (!take.cycle) continue;
+    console.detail(fmt::format("{}: a cycle; its ends were {:.2g} mm apart, and meet now",
+                               take.motion, 1e3 * shots.back().gap_m));
+  }
+  return shots;
+}
+
+void bakeCharacter(BakeOptions& options, const Console& console) {
+  const Cast cast = prepareCast(options.file, options.takes, options.simulation, console);
+  checkRigBake(cast.character, options.rig, options.outputs);
+  checkFiles(cast, options);
+  const std::vector<Shot> shots = shootAll(cast, options, console);
+  Made made;
+  for (const std::string& path : options.outputs) {
+    if (interruptSignal() != 0) throw Interrupted{};
+    writeOutput(cast, shots, path, options, console, made);
+  }
+  std::vector<const Recording*> recordings;
+  for (std::size_t k = 0; k < shots.size(); ++k) {
+    recordings.push_back(&shots[k].recording);
+    if (!options.stats.empty())
+      writeStats(shots[k].recording, fileOf(options.stats, cast.takes, k));
+  }
+  Json::Object more;
+  if (!made.bakes.empty()) more.push_back({"bakes", std::move(made.bakes)});
+  reportRecordings(recordings, made.written, console, more);
 }
 
 void bake(BakeOptions& options, const Console& console) {
   checkFolders(options.outputs);
   checkFolders({options.stats});
   const ThreadLimit threads(options.simulation.threads);
-  if (isSceneFile(options.file)) {
-    if (!options.rig.given().empty())
-      throw Error("--as and its options are for characters on a rig");
-    bakeScene({options.file, options.outputs, options.stats, options.simulation}, console);
+  if (!isSceneFile(options.file)) {
+    bakeCharacter(options, console);
     return;
   }
-  const std::string motionFile =
-      isMotionFile(options.simulation.motion) ? options.simulation.motion : std::string();
-  const Character character = prepareCharacter(options.file, options.simulation, console);
-  checkRigBake(character, options.rig, options.outputs);
-  std::vector<std::string> files;
-  for (const std::string& output : options.outputs)
-    for (const std::string& file : filesOf(character, options.rig, output)) files.push_back(file);
-  checkOverwriting(inputsOf(character, motionFile, options), files, options.stats);
-  const Recording recording =
-      simulate(character, options.simulation.recordOptions(character), console);
-  std::vector<std::string> written;
-  Json::List bakes;
-  for (const std::string& path : options.outputs) {
-    if (interruptSignal() != 0) throw Interrupted{};
-    const std::size_t before = written.size();
-    writeOutput(character, recording, path, options, console, written, bakes);
-    for (std::size_t i = before; i < written.size(); ++i) console.say("wrote " + written[i]);
-  }
-  if (!options.stats.empty()) writeStats(recording, options.stats);
-  reportRecording(recording, written, console,
-                  bakes.empty() ? Json::Object{} : Json::Object{{"bakes", std::move(bakes)}});
+  if (!options.rig.given().empty()) throw Error("--as and its options are for characters on a rig");
+  if (!options.takes.motions.empty() || !options.takes.all.empty() || !options.takes.loop.empty())
+    throw Error("--motion, --motions and --loop are for characters; a scene has its own");
+  bakeScene({options.file, options.outputs, options.stats, options.simulation}, console);
 }
 
 }  // namespace
@@ -153,6 +205,7 @@ void addBake(CLI::App& program, Console& console) {
       ->type_name("HZ")
       ->check(numberIn(1, 1000));
   options->rig.addTo(command);
+  options->takes.addTo(command);
   options->simulation.addTo(command);
   console.addFlags(command);
   console.addVerboseFlag(command);

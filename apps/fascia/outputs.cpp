@@ -72,20 +72,35 @@ void checkOverwriting(const std::vector<std::string>& inputs,
   }
 }
 
-void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
-                     const Console& console, const Json::Object& more) {
-  const double ratio = recording.wall_s > 0 ? recording.simulated_s / recording.wall_s : 0;
-  console.say(
-      fmt::format("{} frames, {} vertices: simulated {:.4g} s in {:.2g} s ({:.0f} × real time)",
-                  recording.frames.size(), recording.skin.positions.size(), recording.simulated_s,
-                  recording.wall_s, ratio));
-  Json::List written;
+void reportRecordings(std::span<const Recording* const> recordings,
+                      const std::vector<std::string>& outputs, const Console& console,
+                      const Json::Object& more) {
+  const bool several = recordings.size() > 1;
+  Json::List written, motions;
   for (const std::string& path : outputs) written.push_back(path);
-  std::vector<Issue> issues;
-  Json stats = parseJson(statsJson(recording), JsonLimits{}, issues);
-  Json answer = Json::Object{{"ok", true}, {"outputs", written}, {"stats", std::move(stats)}};
+  Json answer = Json::Object{{"ok", true}, {"outputs", written}};
+  for (const Recording* r : recordings) {
+    const double ratio = r->wall_s > 0 ? r->simulated_s / r->wall_s : 0;
+    console.say(
+        fmt::format("{}{} frames, {} vertices: simulated {:.4g} s in {:.2g} s ({:.0f} × real time)",
+                    several ? r->motion + ": " : std::string(), r->frames.size(),
+                    r->skin.positions.size(), r->simulated_s, r->wall_s, ratio));
+    std::vector<Issue> issues;
+    Json stats = parseJson(statsJson(*r), JsonLimits{}, issues);
+    if (several)
+      motions.push_back(Json::Object{{"motion", r->motion}, {"stats", std::move(stats)}});
+    else
+      answer.set("stats", std::move(stats));
+  }
+  if (several) answer.set("motions", std::move(motions));
   for (const Json::Member& member : more) answer.set(member.key, member.value);
   console.answer(answer);
+}
+
+void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
+                     const Console& console, const Json::Object& more) {
+  const Recording* const one = &recording;
+  reportRecordings({&one, 1}, outputs, console, more);
 }
 
 }  // namespace fascia

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,11 @@ void checkFolders(const std::vector<std::string>& paths);
 void checkOverwriting(const std::vector<std::string>& inputs,
                       const std::vector<std::string>& outputs, const std::string& stats);
 
-// A line about the simulation for a person, the whole statistics for a machine; `more` joins the
-// machine's answer.
+// A line about each simulation for a person, the whole statistics for a machine: of one as "stats",
+// of several as a list of "motions"; `more` joins the machine's answer.
+void reportRecordings(std::span<const Recording* const> recordings,
+                      const std::vector<std::string>& outputs, const Console& console,
+                      const Json::Object& more = {});
 void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
                      const Console& console, const Json::Object& more = {});
 

@@ -134,6 +134,7 @@ void addRender(CLI::App& program, Console& console) {
   addPictureOptions(command, *options);
   command.add_option("--stats", options->stats, "Write how the simulation went to this JSON file")
       ->type_name("FILE");
+  options->simulation.addMotionTo(command);
   options->simulation.addTo(command);
   console.addFlags(command);
   console.addVerboseFlag(command);

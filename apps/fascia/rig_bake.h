@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,15 @@
 #include <fascia/io/rig_writer.h>
 
 #include "console.h"
+#include "takes.h"
 
 namespace fascia {
 
 // How a simulated motion goes back into the file that a character's rig came from.
 struct RigBakeOptions {
-  std::string as;  // bones, morphs or cache; empty = bones
+  std::string as;  // bones, morphs or cache; empty = bones, of a skin on a grid morphs
   int helpers = 20;
+  double tolerance_percent = 0.2;  // of the height, RMS; 0 = `helpers` and no more
   int influences = 4;
   int targets = 16;
 
@@ -30,7 +33,7 @@ struct RigBakeOptions {
   const CLI::App* command_ = nullptr;
 };
 
-// Throws Error if the options ask for a rig that the character does not have, or for what none of
+// Throws Error if the options ask for a skin that the character does not have, or for what none of
 // the outputs is.
 void checkRigBake(const Character& character, const RigBakeOptions& options,
                   const std::vector<std::string>& outputs);
@@ -39,8 +42,13 @@ void checkRigBake(const Character& character, const RigBakeOptions& options,
 std::vector<std::string> filesOf(const Character& character, const RigBakeOptions& options,
                                  const std::string& output);
 
-RigBakeReport writeRigBake(const Character& character, const Recording& recording,
+// All motions into one file; as a cache, only one.
+RigBakeReport writeRigBake(const CharacterDef& def, std::span<const Shot> shots,
                            const RigBakeOptions& options, const std::string& path,
                            const Console& console);
+
+// Says how faithful a bake is, for a person; for a machine the same.
+Json describe(const RigBakeReport& report, const RigBakeOptions& options, const RiggedModel& rig,
+              const std::string& path, const Console& console);
 
 }  // namespace fascia

@@ -29,11 +29,14 @@ std::vector<std::string> integratorNames() {
 
 }  // namespace
 
-void SimulationOptions::addTo(CLI::App& command) {
+void SimulationOptions::addMotionTo(CLI::App& command) {
   command
       .add_option("--motion", motion,
                   "A character's motion (default: the first); a .bvh file is put onto the rig")
       ->type_name("NAME");
+}
+
+void SimulationOptions::addTo(CLI::App& command) {
   command
       .add_option("--joint-map", joint_map,
                   "Which of the .bvh file's joints drive which of the rig's (default: guessed)")
@@ -131,8 +134,9 @@ int chooseMotion(const Character& character, const std::string& name) {
   throw Error(std::move(issue));
 }
 
-Recording simulate(const Character& character, RecordOptions options, const Console& console) {
-  ProgressBar progress(console, "simulating");
+Recording simulate(const Character& character, RecordOptions options, const Console& console,
+                   const std::string& what) {
+  ProgressBar progress(console, what);
   options.progress = [&](double fraction) {
     if (!progress.update(fraction)) throw Interrupted{};
     return true;

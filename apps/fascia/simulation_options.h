@@ -25,7 +25,10 @@ struct SimulationOptions {
   int threads = 0;           // 0 = all the machine has
   std::uint64_t seed = 0;    // of a scene: 0 = the start as in the file, others scatter it
 
-  void addTo(CLI::App& command);  // all but the frame rate, which commands name differently
+  // All but the frame rate, which commands name differently, and the motion, of which some take
+  // several.
+  void addTo(CLI::App& command);
+  void addMotionTo(CLI::App& command);
   BuildOptions buildOptions() const;
   RecordOptions recordOptions(const Character& character) const;
 };
@@ -64,6 +67,7 @@ Character prepareCharacter(CharacterFile file, SimulationOptions& options, const
 int chooseMotion(const Character& character, const std::string& name);
 
 // Simulates with a progress bar. Throws Interrupted on Ctrl-C.
-Recording simulate(const Character& character, RecordOptions options, const Console& console);
+Recording simulate(const Character& character, RecordOptions options, const Console& console,
+                   const std::string& what = "simulating");
 
 }  // namespace fascia

@@ -34,6 +34,45 @@ TEST_F(Cli, BakeWritesEveryFormatFromOneSimulation) {
   EXPECT_EQ(files().size(), 4u);
 }
 
+// One small file of both motions, an animation each; every vertex of every frame is larger.
+TEST_F(Cli, GridsBecomeSmallFilesOfAllTheirMotions) {
+  const Outcome whole = run({"bake", "ball.fascia.json", "--as", "cache", "-o", "whole.glb"});
+  ASSERT_EQ(whole.exitCode, 0) << whole.err;
+  for (const std::string as : {"", "morphs", "bones"}) {
+    std::vector<std::string> command{"bake",  "ball.fascia.json", "--motions", "all", "-o", "a.glb",
+                                     "--json"};
+    if (!as.empty()) command.insert(command.end(), {"--as", as});
+    if (as == "bones") command.insert(command.end(), {"--helpers", "4"});
+    const Outcome outcome = run(command);
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const nlohmann::json bake = outcome.json().at("bakes").at(0);
+    EXPECT_EQ(bake.at("bytes"), content("a.glb").size());
+    EXPECT_LT(content("a.glb").size(), content("whole.glb").size());
+    ASSERT_EQ(bake.at("motions").size(), 2u);
+    for (const nlohmann::json& motion : bake.at("motions")) {
+      EXPECT_LE(motion.at("rms_mm"), motion.at("max_mm"));
+      EXPECT_LT(motion.at("rms_percent"), 0.5);
+    }
+    for (const char* name : {"\"hop\"", "\"rest\""}) EXPECT_THAT(content("a.glb"), HasSubstr(name));
+    EXPECT_EQ(content("a.glb").find("fascia_helper_01") != std::string::npos, as == "bones");
+  }
+}
+
+TEST_F(Cli, OptionsOfOneWayToBakeAGridAreRefusedWithTheOther) {
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{"--helpers", "3", "-o", "a.glb"},
+                                             {"--as", "bones", "--targets", "3", "-o", "a.glb"},
+                                             {"--as", "cache", "--targets", "3", "-o", "a.glb"},
+                                             {"--as", "bones", "-o", "a.pc2"}}) {
+    std::vector<std::string> command{"bake", "ball.fascia.json"};
+    command.insert(command.end(), options.begin(), options.end());
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.out;
+    EXPECT_THAT(outcome.err, HasSubstr("leave --"));
+    EXPECT_FALSE(exists("a.glb") || exists("a.pc2"));
+  }
+}
+
 TEST_F(Cli, BakeObeysItsOptions) {
   const Outcome outcome = run({"bake", "ball.fascia.json", "--motion", "rest", "--fps", "30",
                                "--grid", "24x16", "--duration", "0.4", "-o", "a.fcache"});

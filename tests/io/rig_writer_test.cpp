@@ -246,6 +246,66 @@ TEST(RigAsBones, LooseMeshesGetASkinIfTheyAreSoft) {
   EXPECT_TRUE(GltfDocument::read(folder / "soft.glb").root()["nodes"].at(4)["skin"]);
 }
 
+// Two motions, one set of helpers: each in its own animation.
+TEST(RigAsBones, SeveralMotionsShareTheirHelpers) {
+  const sample::Folder folder;
+  const std::string path = write(folder, animatedTube());
+  const Simulated bend = simulate(path, 0, 61, 60, swaying),
+                  hop = simulate(path, 1, 61, 60, swaying);
+  const std::vector<RigClip> clips{{bend.model, bend.recording, bend.joints_world, bend.motion, 1},
+                                   {bend.model, hop.recording, hop.joints_world, hop.motion, 1}};
+  const RigBakeReport report = writeRigAsBones(clips, {2, 4, 60}, folder / "out.glb");
+  EXPECT_LT(report.error.max_mm, kFollowed_mm);
+  ASSERT_EQ(report.baked.size(), 2u);
+  EXPECT_EQ(report.baked[1].name, "hop");
+  EXPECT_TRUE(report.others.empty());
+  const GltfDocument document = GltfDocument::read(folder / "out.glb");
+  EXPECT_EQ(document.root()["animations"].size(), 2u);
+  EXPECT_EQ(animationOf(document, kBend)["channels"].size(), 1 + 2 * report.added);
+  EXPECT_EQ(animationOf(document, "hop")["channels"].size(), 1 + 2 * report.added);
+}
+
+TEST(RigAsBones, MotionsNotBakedStayAsTheyWere) {
+  const sample::Folder folder;
+  const Simulated s = simulate(write(folder, animatedTube()), 1, 61, 60, swaying);
+  const RigBakeReport report = writeRigAsBones(s.clip(), {2, 4, 60}, folder / "out.glb");
+  ASSERT_EQ(report.others.size(), 1u);
+  EXPECT_EQ(report.others[0].name, kBend);
+  EXPECT_LE(report.others[0].error.rms_mm, report.others[0].error.max_mm);
+  EXPECT_LT(report.others[0].error.max_mm, 20);  // of 2 m
+}
+
+TEST(RigAsBones, NothingIsAddedWhereNothingMoves) {
+  const sample::Folder folder;
+  const auto still = [](const Eigen::Vector3f& p, double) { return p; };
+  const Simulated s = simulate(write(folder, animatedTube()), 0, 61, 60, still);
+  const RigBakeReport report = writeRigAsBones(s.clip(), {4, 4, 12}, folder / "out.glb");
+  EXPECT_TRUE(report.plain);
+  EXPECT_EQ(report.added, 0u);
+  EXPECT_LT(report.error.max_mm, 0.1);
+  const GltfDocument before = GltfDocument::read(folder / "rig.glb");
+  const GltfDocument after = GltfDocument::read(folder / "out.glb");
+  const auto weights = [](const GltfDocument& document) {
+    return document.floats(
+        document.root()["meshes"].at(0)["primitives"].at(0)["attributes"]["WEIGHTS_0"].index(1000),
+        4);
+  };
+  EXPECT_EQ(weights(after), weights(before));
+}
+
+TEST(RigAsMorphs, SeveralMotionsShareTheirTargets) {
+  const sample::Folder folder;
+  const std::string path = write(folder, animatedTube());
+  const Simulated bend = simulate(path, 0, 61, 60, swaying),
+                  hop = simulate(path, 1, 61, 60, swaying);
+  const std::vector<RigClip> clips{{bend.model, bend.recording, bend.joints_world, bend.motion, 1},
+                                   {bend.model, hop.recording, hop.joints_world, hop.motion, 1}};
+  const RigBakeReport report = writeRigAsMorphs(clips, {}, folder / "out.glb");
+  EXPECT_LE(report.added, 3u);
+  EXPECT_LT(report.error.max_mm, 0.01);
+  ASSERT_EQ(report.baked.size(), 2u);
+}
+
 TEST(RigAsMorphs, PlaysWhatTargetsCanSay) {
   const sample::Folder folder;
   const Simulated s = simulate(write(folder, animatedTube()), 0, 61, 60, swaying);
@@ -347,6 +407,8 @@ TEST(RigWriter, BadInputLeavesNoFile) {
   s.joints_world.pop_back();
   expectRefused();
   s.joints_world.push_back(s.joints_world.back());
+  const std::vector<RigClip> twice{s.clip(), s.clip()};  // of one name
+  EXPECT_THROW(writeRigAsBones(twice, {1, 4, 3}, folder / "out.glb"), Error);
   sample::TubeRig other = animatedTube();  // the file is another one now
   other.file.nodes = R"([{"name":"lower","children":[1,2]},)"
                      R"({"name":"upper","translation":[0,1,0]},{"name":"body","mesh":0,"skin":0}])";
@@ -411,7 +473,13 @@ TEST_F(BakedFox, KhronosValidatorFindsNothing) {
   writeRigAsBones(fox_.clip(), {4, 8, 3}, folder / "bones.glb");
   writeRigAsMorphs(fox_.clip(), {}, folder / "morphs.glb");
   writeRigAsCache(fox_.clip(), folder / "cache.glb");
-  for (const char* name : {"bones.glb", "morphs.glb", "cache.glb"}) {
+  const Simulated walk =
+      simulate(*assetFile("khronos-gltf-tests/Fox.glb"), 1, 18, 24, breathing, 0.01);
+  const std::vector<RigClip> two{
+      fox_.clip(), {fox_.model, walk.recording, walk.joints_world, walk.motion, fox_.scale}};
+  writeRigAsBones(two, {6, 4, 3}, folder / "two.glb");
+  writeRigAsMorphs(two, {}, folder / "two_morphs.glb");
+  for (const char* name : {"bones.glb", "morphs.glb", "cache.glb", "two.glb", "two_morphs.glb"}) {
     expectSuccess("node", {FASCIA_SOURCE_DIR "/tests/io/validate_gltf.js", module, folder / name});
   }
 }

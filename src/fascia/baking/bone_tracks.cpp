@@ -17,11 +17,11 @@ Vec3 blendPoint(const Vec3& rest, const PointWeights& weights, const BoneTracks&
 }
 
 void squaredErrors(const SkinningProblem& problem, std::span<const PointWeights> weights,
-                   const BoneTracks& bones, std::vector<double>& error) {
+                   const BoneTracks& bones, std::size_t frames, std::vector<double>& error) {
   error.resize(problem.pointCount());
   parallelFor(problem.pointCount(), [&](std::size_t i) {
     double sum = 0;
-    for (std::size_t f = 0; f < problem.frameCount; ++f) {
+    for (std::size_t f = 0; f < frames; ++f) {
       sum += (blendPoint(problem.rest_m[i], weights[i], bones, f) -
               problem.target(i, f).cast<double>())
                  .squaredNorm();
@@ -32,15 +32,15 @@ void squaredErrors(const SkinningProblem& problem, std::span<const PointWeights>
 
 double largestError(const SkinningProblem& problem, std::span<const PointWeights> weights,
                     const BoneTracks& bones) {
-  double largest = 0;
-  for (std::size_t i = 0; i < problem.pointCount(); ++i) {
+  std::vector<double> largest(problem.pointCount(), 0.0);
+  parallelFor(problem.pointCount(), [&](std::size_t i) {
     for (std::size_t f = 0; f < problem.frameCount; ++f) {
-      largest = std::max(largest, (blendPoint(problem.rest_m[i], weights[i], bones, f) -
-                                   problem.target(i, f).cast<double>())
-                                      .squaredNorm());
+      largest[i] = std::max(largest[i], (blendPoint(problem.rest_m[i], weights[i], bones, f) -
+                                         problem.target(i, f).cast<double>())
+                                            .squaredNorm());
     }
-  }
-  return std::sqrt(largest);
+  });
+  return largest.empty() ? 0 : std::sqrt(*std::max_element(largest.begin(), largest.end()));
 }
 
 }  // namespace fascia

@@ -48,9 +48,9 @@ struct SkinningProblem {
 Vec3 blendPoint(const Vec3& rest, const PointWeights& weights, const BoneTracks& bones,
                 std::size_t frame);
 
-// Per point: sum over frames of the squared distance to its target.
+// Per point: sum over the first `frames` frames of the squared distance to its target.
 void squaredErrors(const SkinningProblem& problem, std::span<const PointWeights> weights,
-                   const BoneTracks& bones, std::vector<double>& error);
+                   const BoneTracks& bones, std::size_t frames, std::vector<double>& error);
 
 // Over all points and frames.
 double largestError(const SkinningProblem& problem, std::span<const PointWeights> weights,

@@ -95,16 +95,32 @@ int parentOf(const SkinningProblem& problem, std::span<const PointWeights> rigWe
   return best;
 }
 
-// Where most error lies around; places near earlier seeds count less, as a helper that could not
-// mend them will not the next time either.
-std::uint32_t worstPlace(const PointGraph& graph, std::span<const double> squaredError,
-                         std::span<const std::uint32_t> earlierSeeds, std::size_t patchSize) {
-  std::vector<double> score(squaredError.begin(), squaredError.end());
-  smoothOnGraph(graph, 6, score);
-  for (const std::uint32_t seed : earlierSeeds) {
-    for (const std::uint32_t i : patchAround(graph, seed, patchSize)) score[i] *= 0.5;
+// Rigid motion of a patch, the more of it the less the other bones carry it.
+HelperSeed seedAt(const SkinningProblem& problem, std::span<const PointWeights> rigWeights,
+                  const BoneTracks& bones, std::span<const double> squaredError,
+                  std::span<const std::uint32_t> patch) {
+  HelperSeed seed;
+  seed.point = patch.front();
+  double largest = 0;
+  for (const std::uint32_t i : patch) {
+    largest = std::max(largest, squaredError[i]);
+    seed.radius_m =
+        std::max(seed.radius_m, (problem.rest_m[i] - problem.rest_m[seed.point]).norm());
   }
-  return static_cast<std::uint32_t>(std::max_element(score.begin(), score.end()) - score.begin());
+  std::vector<double> say;
+  say.reserve(patch.size());
+  for (const std::uint32_t i : patch) say.push_back(largest > 0 ? squaredError[i] / largest : 1.0);
+  seed.parent = parentOf(problem, rigWeights, bones, patch, say);
+  const std::span<const Transform> like = bones.track(static_cast<std::size_t>(seed.parent));
+  for (std::size_t f = 0; f < problem.frameCount; ++f) {
+    RigidFit fit(problem.rest_m[seed.point]);
+    for (std::size_t p = 0; p < patch.size(); ++p) {
+      const double root = std::sqrt(say[p]);
+      fit.add(problem.rest_m[patch[p]], root, root * problem.target(patch[p], f).cast<double>());
+    }
+    seed.track.push_back(fit.solve(like[f]));
+  }
+  return seed;
 }
 
 }  // namespace
@@ -155,30 +171,31 @@ void fitHelperMotions(const SkinningProblem& problem, std::span<const PointWeigh
   });
 }
 
-HelperSeed seedHelper(const SkinningProblem& problem, const PointGraph& graph,
-                      std::span<const PointWeights> rigWeights, const BoneTracks& bones,
-                      std::span<const double> squaredError,
-                      std::span<const std::uint32_t> earlierSeeds, std::size_t patchSize) {
-  HelperSeed seed;
-  seed.point = worstPlace(graph, squaredError, earlierSeeds, patchSize);
-  const std::vector<std::uint32_t> patch = patchAround(graph, seed.point, patchSize);
-  // Points that the other bones already carry well have little say.
-  double largest = 0;
-  for (const std::uint32_t i : patch) largest = std::max(largest, squaredError[i]);
-  std::vector<double> say;
-  say.reserve(patch.size());
-  for (const std::uint32_t i : patch) say.push_back(largest > 0 ? squaredError[i] / largest : 1.0);
-  seed.parent = parentOf(problem, rigWeights, bones, patch, say);
-  const std::span<const Transform> like = bones.track(static_cast<std::size_t>(seed.parent));
-  for (std::size_t f = 0; f < problem.frameCount; ++f) {
-    RigidFit fit(problem.rest_m[seed.point]);
-    for (std::size_t p = 0; p < patch.size(); ++p) {
-      const double root = std::sqrt(say[p]);
-      fit.add(problem.rest_m[patch[p]], root, root * problem.target(patch[p], f).cast<double>());
-    }
-    seed.track.push_back(fit.solve(like[f]));
+std::vector<HelperSeed> seedHelpers(const SkinningProblem& problem, const PointGraph& graph,
+                                    std::span<const PointWeights> rigWeights,
+                                    const BoneTracks& bones, std::span<const double> squaredError,
+                                    std::size_t patchSize, std::size_t count,
+                                    std::vector<std::uint32_t>& seeds) {
+  std::vector<double> score(squaredError.begin(), squaredError.end());
+  smoothOnGraph(graph, 6, score);
+  for (const std::uint32_t seed : seeds) {
+    for (const std::uint32_t i : patchAround(graph, seed, patchSize)) score[i] *= 0.5;
   }
-  return seed;
+  // One after the other, where the ones before do not reach.
+  std::vector<std::vector<std::uint32_t>> patches;
+  while (patches.size() < count) {
+    const auto worst = std::max_element(score.begin(), score.end());
+    if (*worst <= 0) break;
+    const auto seed = static_cast<std::uint32_t>(worst - score.begin());
+    seeds.push_back(seed);
+    patches.push_back(patchAround(graph, seed, patchSize));
+    for (const std::uint32_t i : patchAround(graph, seed, 2 * patchSize)) score[i] = 0;
+  }
+  std::vector<HelperSeed> found(patches.size());
+  parallelFor(patches.size(), [&](std::size_t k) {
+    found[k] = seedAt(problem, rigWeights, bones, squaredError, patches[k]);
+  });
+  return found;
 }
 
 }  // namespace fascia

@@ -36,12 +36,18 @@ void fitHelperMotions(const SkinningProblem& problem, std::span<const PointWeigh
 // A new helper for where the error is largest: its motion follows a patch of points rigidly.
 struct HelperSeed {
   std::uint32_t point = 0;
-  int parent = 0;  // the rig's joint that moves most like it
+  double radius_m = 0;  // of the patch
+  int parent = 0;       // the rig's joint that moves most like it
   std::vector<Transform> track;
 };
-HelperSeed seedHelper(const SkinningProblem& problem, const PointGraph& graph,
-                      std::span<const PointWeights> rigWeights, const BoneTracks& bones,
-                      std::span<const double> squaredError,
-                      std::span<const std::uint32_t> earlierSeeds, std::size_t patchSize);
+
+// At most `count` of them, far enough from each other to be fitted at once; fewer where no error is
+// left. Places near `seeds`, those of helpers before, count less, as a helper that could not mend
+// them will not the next time either; the new ones are added to them.
+std::vector<HelperSeed> seedHelpers(const SkinningProblem& problem, const PointGraph& graph,
+                                    std::span<const PointWeights> rigWeights,
+                                    const BoneTracks& bones, std::span<const double> squaredError,
+                                    std::size_t patchSize, std::size_t count,
+                                    std::vector<std::uint32_t>& seeds);
 
 }  // namespace fascia

@@ -2,132 +2,212 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace fascia {
 namespace {
 
-// The candidates whose weights may differ from 0.
-struct Support {
-  std::array<int, kMostCandidates> member{};
-  int size = 0;
+// So many may differ from 0 before they are thinned out: as many as the true optimum has, mostly.
+constexpr int kMostMembers = 12;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostMembers, 1>;
+using SmallMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostMembers, kMostMembers>;
 
-  void add(int candidate) { member[static_cast<std::size_t>(size++)] = candidate; }
-  int operator[](int k) const { return member[static_cast<std::size_t>(k)]; }
+// So many candidates are tried before the weights count as the best: the second or third in the
+// order of slopes pays now and then where the first does not.
+constexpr int kTries = 3;
+
+// Weights and which of them may differ from 0, at the optimum among those.
+class Support {
+ public:
+  Support(const CandidateMatrix& G, const CandidateVector& g) : G_(&G), g_(&g) {}
+
+  int size() const { return size_; }
+  double cost() const { return cost_; }
+  double multiplier() const { return multiplier_; }  // of Σ w = 1: gradient of every member
+  bool has(int candidate) const {
+    return std::find(member_.begin(), member_.begin() + size_, candidate) !=
+           member_.begin() + size_;
+  }
+  void start(const CandidateVector& w) {
+    for (int c = 0; c < static_cast<int>(w.size()) && size_ < kMostNonZero; ++c) {
+      if (w[c] > 0) add(c, w[c]);
+    }
+    if (size_ == 0) add(bestSingle(), 1);
+    w_.head(size_) /= w_.head(size_).sum();
+  }
+  void add(int candidate, double weight) {
+    assert(size_ < kMostMembers);
+    member_[at(size_)] = candidate;
+    w_[size_++] = weight;
+  }
+
+  // Goes from feasible weights to the optimum over the members, dropping what would turn negative.
+  void descend() {
+    while (true) {
+      const SmallVector best = solveEquality();
+      double step = 1;
+      int blocking = -1;
+      for (int k = 0; k < size_; ++k) {
+        if (best[k] >= 0 || size_ == 1) continue;
+        const double reach = w_[k] / (w_[k] - best[k]);
+        if (reach < step || blocking < 0) step = reach, blocking = k;
+      }
+      w_.head(size_) += step * (best - w_.head(size_));
+      if (blocking < 0) break;
+      remove(blocking);
+    }
+    cost_ = 0;
+    for (int r = 0; r < size_; ++r) {
+      double row = -2 * (*g_)[member_[at(r)]];
+      for (int c = 0; c < size_; ++c) row += (*G_)(member_[at(r)], member_[at(c)]) * w_[c];
+      cost_ += 0.5 * w_[r] * row;
+    }
+  }
+
+  // Takes out the member whose loss raises the cost least. With H the inverse of G on the plane
+  // Σ w = 1, taking member k out costs w_k² / (2 H_kk).
+  void dropLeastMissed() {
+    const SmallVector ones = inverse_.rowwise().sum();
+    const double total = ones.sum();
+    int least = 0;
+    double leastCost = 0;
+    for (int k = 0; k < size_; ++k) {
+      const double h = inverse_(k, k) - ones[k] * ones[k] / total;
+      const double cost = w_[k] * w_[k] / std::max(h, 1e-300);
+      if (k == 0 || cost < leastCost) least = k, leastCost = cost;
+    }
+    remove(least);
+    w_.head(size_) /= w_.head(size_).sum();
+    descend();
+  }
+
+  // G w − g at every candidate.
+  CandidateVector gradient() const {
+    CandidateVector out = -*g_;
+    for (int k = 0; k < size_; ++k) out += w_[k] * G_->col(member_[at(k)]);
+    return out;
+  }
+  CandidateVector weights() const {
+    CandidateVector out = CandidateVector::Zero(g_->size());
+    for (int k = 0; k < size_; ++k) out[member_[at(k)]] = w_[k];
+    return out;
+  }
+
+ private:
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+  int bestSingle() const {
+    int best = 0;
+    for (int c = 1; c < static_cast<int>(g_->size()); ++c) {
+      if (0.5 * (*G_)(c, c) - (*g_)[c] < 0.5 * (*G_)(best, best) - (*g_)[best]) best = c;
+    }
+    return best;
+  }
   void remove(int k) {
-    for (int i = k; i + 1 < size; ++i) {
-      member[static_cast<std::size_t>(i)] = member[static_cast<std::size_t>(i) + 1];
+    for (int i = k; i + 1 < size_; ++i) {
+      member_[at(i)] = member_[at(i) + 1];
+      w_[i] = w_[i + 1];
     }
-    --size;
+    --size_;
   }
+  // The optimum over the members with Σ w = 1 but without w ≥ 0.
+  SmallVector solveEquality() {
+    SmallMatrix A(size_, size_);
+    SmallVector b(size_);
+    for (int r = 0; r < size_; ++r) {
+      for (int c = 0; c < size_; ++c) A(r, c) = (*G_)(member_[at(r)], member_[at(c)]);
+      b[r] = (*g_)[member_[at(r)]];
+    }
+    inverse_ = A.llt().solve(SmallMatrix::Identity(size_, size_));
+    const SmallVector ones = inverse_.rowwise().sum();
+    const SmallVector free = inverse_ * b;
+    multiplier_ = (1 - free.sum()) / ones.sum();
+    return free + multiplier_ * ones;
+  }
+
+  const CandidateMatrix* G_;
+  const CandidateVector* g_;
+  std::array<int, kMostMembers> member_{};
+  int size_ = 0;
+  Eigen::Matrix<double, kMostMembers, 1> w_ = Eigen::Matrix<double, kMostMembers, 1>::Zero();
+  SmallMatrix inverse_;  // of G, restricted to the members
+  double multiplier_ = 0, cost_ = 0;
 };
 
-// The optimum over the support with Σ w = 1 but without w ≥ 0.
-struct Equality {
-  CandidateVector w;        // of the support
-  CandidateMatrix inverse;  // of G, restricted to the support
-  double multiplier = 0;    // of Σ w = 1: gradient of every member
-};
-
-Equality solveEquality(const CandidateMatrix& G, const CandidateVector& g, const Support& support) {
-  const int n = support.size;
-  CandidateMatrix A(n, n);
-  CandidateVector b(n);
-  for (int r = 0; r < n; ++r) {
-    for (int c = 0; c < n; ++c) A(r, c) = G(support[r], support[c]);
-    b[r] = g[support[r]];
-  }
-  Equality out;
-  out.inverse = A.llt().solve(CandidateMatrix::Identity(n, n));
-  const CandidateVector ones = out.inverse.rowwise().sum();
-  const CandidateVector free = out.inverse * b;
-  out.multiplier = (1 - free.sum()) / ones.sum();
-  out.w = free + out.multiplier * ones;
-  return out;
-}
-
-// Goes from feasible weights to the optimum over the support, dropping what would turn negative.
-Equality descend(const CandidateMatrix& G, const CandidateVector& g, Support& support,
-                 CandidateVector& w) {
-  while (true) {
-    Equality best = solveEquality(G, g, support);
-    double step = 1;
-    int blocking = -1;
-    for (int k = 0; k < support.size; ++k) {
-      const double from = w[support[k]];
-      if (best.w[k] >= 0 || support.size == 1) continue;
-      const double reach = from / (from - best.w[k]);
-      if (reach < step || blocking < 0) step = reach, blocking = k;
-    }
-    for (int k = 0; k < support.size; ++k) {
-      w[support[k]] += step * (best.w[k] - w[support[k]]);
-    }
-    if (blocking < 0) return best;
-    w[support[blocking]] = 0;
-    support.remove(blocking);
-  }
-}
-
-// The candidate outside of the support whose growth lowers the cost fastest; -1: none does.
-int mostWanted(const CandidateMatrix& G, const CandidateVector& g, const CandidateVector& w,
-               double multiplier, const Support& support) {
-  const CandidateVector gradient = G * w - g;
+// The candidates outside of the support whose growth lowers the cost, the fastest first; -1: none.
+std::array<int, kTries> mostWanted(const CandidateMatrix& G, const CandidateVector& g,
+                                   const Support& support) {
+  const CandidateVector gradient = support.gradient();
   // Below this share of the terms that cancel in it, a gradient is rounding.
-  double least = -1e-12 * (G.diagonal().maxCoeff() + g.cwiseAbs().maxCoeff());
-  int wanted = -1;
-  for (int c = 0; c < static_cast<int>(w.size()); ++c) {
-    bool inside = false;
-    for (int k = 0; k < support.size; ++k) inside = inside || support[k] == c;
-    const double slope = gradient[c] - multiplier;
-    if (!inside && slope < least) least = slope, wanted = c;
+  const double least = -1e-12 * (G.diagonal().maxCoeff() + g.cwiseAbs().maxCoeff());
+  std::array<int, kTries> wanted;
+  wanted.fill(-1);
+  std::array<double, kTries> slopes{};
+  for (int c = 0; c < static_cast<int>(g.size()); ++c) {
+    double slope = gradient[c] - support.multiplier();
+    if (slope >= least || support.has(c)) continue;
+    int candidate = c;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      if (wanted[k] >= 0 && slopes[k] <= slope) continue;
+      std::swap(wanted[k], candidate);
+      std::swap(slopes[k], slope);
+      if (candidate < 0) break;
+    }
   }
   return wanted;
 }
 
-// The member whose removal raises the cost least. With H the inverse of G on the plane Σ w = 1,
-// taking member k out costs w_k² / (2 H_kk).
-int leastMissed(const Equality& at) {
-  const CandidateVector ones = at.inverse.rowwise().sum();
-  const double total = ones.sum();
-  int least = 0;
-  double leastCost = 0;
-  for (int k = 0; k < static_cast<int>(at.w.size()); ++k) {
-    const double h = at.inverse(k, k) - ones[k] * ones[k] / total;
-    const double cost = at.w[k] * at.w[k] / std::max(h, 1e-300);
-    if (k == 0 || cost < leastCost) least = k, leastCost = cost;
+// Lets in whoever lowers the cost, then thins out again.
+Support widenAndThin(const CandidateMatrix& G, const CandidateVector& g, int mostNonZero,
+                     Support support) {
+  // The limit only guards against rounding that cycles.
+  for (int round = 0; round < 2 * kMostCandidates && support.size() < kMostMembers; ++round) {
+    const int candidate = mostWanted(G, g, support).front();
+    if (candidate < 0) break;
+    support.add(candidate, 0);
+    support.descend();
   }
-  return least;
+  while (support.size() > mostNonZero) support.dropLeastMissed();
+  return support;
+}
+
+// Changes one member at a time, as long as that pays.
+void exchange(const CandidateMatrix& G, const CandidateVector& g, int mostNonZero,
+              Support& support) {
+  const double least = 1e-13 * (G.diagonal().maxCoeff() + g.cwiseAbs().maxCoeff());
+  for (int round = 0; round < 2 * kMostCandidates; ++round) {
+    bool better = false;
+    for (const int candidate : mostWanted(G, g, support)) {
+      if (candidate < 0) break;
+      Support trial = support;
+      trial.add(candidate, 0);
+      trial.descend();
+      if (trial.size() > mostNonZero) trial.dropLeastMissed();
+      better = trial.cost() < support.cost() - least;
+      if (!better) continue;
+      support = trial;
+      break;
+    }
+    if (!better) break;
+  }
 }
 
 }  // namespace
 
-CandidateVector solveOnSimplex(const CandidateMatrix& G, const CandidateVector& g,
-                               int mostNonZero) {
-  const auto count = static_cast<int>(g.size());
-  int first = 0;
-  for (int c = 1; c < count; ++c) {
-    if (0.5 * G(c, c) - g[c] < 0.5 * G(first, first) - g[first]) first = c;
-  }
-  CandidateVector w = CandidateVector::Zero(count);
-  w[first] = 1;
-  Support support;
-  support.add(first);
-  Equality at = solveEquality(G, g, support);
-  // Every round lowers the cost; the limit only guards against rounding that cycles.
-  for (int round = 0; round < 4 * count; ++round) {
-    const int wanted = mostWanted(G, g, w, at.multiplier, support);
-    if (wanted < 0) break;
-    support.add(wanted);
-    at = descend(G, g, support, w);
-  }
-  while (support.size > mostNonZero) {
-    const int out = leastMissed(at);
-    w[support[out]] = 0;
-    support.remove(out);
-    w /= w.sum();
-    at = descend(G, g, support, w);
-  }
-  return w;
+CandidateVector solveOnSimplex(const CandidateMatrix& G, const CandidateVector& g, int mostNonZero,
+                               const CandidateVector& start) {
+  assert(mostNonZero >= 1 && mostNonZero <= kMostNonZero && start.size() == g.size());
+  Support now(G, g);
+  now.start(start);
+  now.descend();
+  const Support wide = widenAndThin(G, g, mostNonZero, now);
+  while (now.size() > mostNonZero) now.dropLeastMissed();
+  if (wide.cost() < now.cost()) now = wide;
+  exchange(G, g, mostNonZero, now);
+  return now.weights();
 }
 
 }  // namespace fascia

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include <fascia/baking/blended_frames.h>
 #include <fascia/baking/bone_tracks.h>
 #include <fascia/baking/helper_bones.h>
-#include <fascia/baking/point_graph.h>
-#include <fascia/baking/weight_fit.h>
+#include <fascia/baking/helper_search.h>
 #include <fascia/base/error.h>
 #include <fascia/base/parallel.h>
 
@@ -17,192 +17,139 @@ namespace {
 // Longer motions are fitted in this many frames, evenly spread; all frames are fitted at the end
 // with the weights found. More frames hardly change the weights, but cost time in proportion.
 constexpr std::size_t kMostFittedFrames = 90;
-// Another round that lowers the error by less than this share is not worth its time.
-constexpr double kLeastGain = 5e-4;
-// Of the model's size: below this, an error is that of the single-precision input.
-constexpr double kNoError = 1e-7;
-// Helpers that carry fewer points than this are moved to where they are needed.
-constexpr double kLeastCarried = 0.5;
+// … and so many more for every further motion, up to a bound.
+constexpr std::size_t kMoreFrames = 8, kMostFramesOfAll = 240;
+// Frames whose helpers are fitted at once: bounds the memory that long motions take.
+constexpr std::size_t kFramesPerBlock = 128;
+constexpr int kLastSweeps = 6;
+// Of the model's size: a surface that stays this near to the rig's own skinning needs no helpers.
+constexpr double kPlain = 2e-5;
 
-std::vector<std::size_t> fittedFrames(std::size_t count) {
-  std::vector<std::size_t> frames(std::min(count, kMostFittedFrames));
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    frames[k] = frames.size() < 2 ? 0 : k * (count - 1) / (frames.size() - 1);
+// Each motion gets its share, and both of its ends.
+std::vector<std::size_t> fittedFrames(std::size_t count, std::vector<std::size_t> motionFrames) {
+  if (motionFrames.empty()) motionFrames.push_back(count);
+  const std::size_t budget =
+      std::min(kMostFramesOfAll, kMostFittedFrames + kMoreFrames * (motionFrames.size() - 1));
+  std::vector<std::size_t> frames;
+  std::size_t first = 0;
+  for (const std::size_t length : motionFrames) {
+    const std::size_t share =
+        std::min(length, std::max<std::size_t>(2, budget * length / std::max(count, budget)));
+    for (std::size_t k = 0; k < share; ++k) {
+      frames.push_back(first + (share < 2 ? 0 : k * (length - 1) / (share - 1)));
+    }
+    first += length;
   }
   return frames;
 }
 
+// Frames of a surface, and those in which it shall be kept, as one.
 SkinningProblem problemOf(std::span<const Eigen::Vector3f> rest, const PointFrames& frames,
-                          std::span<const std::size_t> chosen) {
+                          std::span<const std::size_t> chosen, const PointFrames& kept = {}) {
   SkinningProblem problem;
-  problem.frameCount = chosen.size();
+  problem.frameCount = chosen.size() + kept.size();
   problem.rest_m.reserve(rest.size());
   for (const Eigen::Vector3f& p : rest) problem.rest_m.push_back(p.cast<double>());
-  problem.target_m.resize(rest.size() * chosen.size());
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
+  problem.target_m.resize(rest.size() * problem.frameCount);
+  for (std::size_t k = 0; k < problem.frameCount; ++k) {
+    const std::vector<Eigen::Vector3f>& frame =
+        k < chosen.size() ? frames[chosen[k]] : kept[k - chosen.size()];
     for (std::size_t i = 0; i < rest.size(); ++i) {
-      problem.target_m[i * chosen.size() + k] = frames[chosen[k]][i];
+      problem.target_m[i * problem.frameCount + k] = frame[i];
     }
   }
   return problem;
 }
 
-BoneTracks tracksOf(const std::vector<std::vector<Transform>>& bones,
-                    std::span<const std::size_t> chosen) {
-  BoneTracks tracks(chosen.size());
-  std::vector<Transform> track(chosen.size());
+BoneTracks tracksOf(const BoneFrames& bones, std::span<const std::size_t> chosen,
+                    const BoneFrames& kept = {}) {
+  BoneTracks tracks(chosen.size() + kept.size());
+  std::vector<Transform> track;
   for (std::size_t b = 0; b < bones[0].size(); ++b) {
-    for (std::size_t k = 0; k < chosen.size(); ++k) track[k] = bones[chosen[k]][b];
+    track.clear();
+    for (const std::size_t f : chosen) track.push_back(bones[f][b]);
+    for (const std::vector<Transform>& pose : kept) track.push_back(pose[b]);
     tracks.add(track);
   }
   return tracks;
 }
 
-double rmsOf(std::span<const double> squaredError, std::size_t frames) {
-  const double sum = std::accumulate(squaredError.begin(), squaredError.end(), 0.0);
-  return std::sqrt(sum / static_cast<double>(squaredError.size() * frames));
-}
-
-// Bones against weights, in the fitted frames.
-class Alternation {
+// Helpers' motions in frames [first, last): at first as they lie to their parents in the nearest
+// fitted frame; on them where there is none.
+class HelperSpread {
  public:
-  Alternation(const SkinningProblem& problem, const PointGraph& graph,
-              std::span<const PointWeights> rigWeights, BoneTracks bones,
-              const DecompositionOptions& options)
-      : problem_(problem),
-        graph_(graph),
-        rig_(rigWeights),
-        rigBoneCount_(bones.boneCount()),
-        options_(options),
-        fit_(problem, graph, rigWeights, rigBoneCount_, options.influences),
-        bones_(std::move(bones)),
-        weights_(rigWeights.begin(), rigWeights.end()),
-        everyPoint_(problem.pointCount()) {
-    std::iota(everyPoint_.begin(), everyPoint_.end(), 0u);
-    Box box;
-    for (const Vec3& p : problem.rest_m) box.add(p);
-    noError_m_ = kNoError * box.size().norm();
-  }
+  HelperSpread(std::span<const Eigen::Vector3f> rest, const SkinningDecomposition& found,
+               const BoneFrames& bones, const PointFrames& targets)
+      : rest_(rest), found_(found), bones_(bones), targets_(targets) {}
 
-  void run() {
-    fitWeights(everyPoint_);
-    for (int h = 0; h < options_.helperBones && rms_m() > noError_m_; ++h) {
-      tell(h);
-      addHelper();
-    }
-    double before = rms_m();
-    for (int round = 0; round < options_.iterations && !parents_.empty(); ++round) {
-      tell(options_.helperBones + round);
-      fitHelperMotions(problem_, weights_, rigBoneCount_, 1, bones_);
-      fitWeights(everyPoint_);
-      const bool moved = moveIdleHelpers();
-      const double now = rms_m();
-      if (now <= noError_m_ || (!moved && now > (1 - kLeastGain) * before)) break;
-      before = now;
-    }
-  }
+  // The frames of `bones` that the helpers' tracks belong to, increasing.
+  void startFrom(std::span<const std::size_t> fitted) { fitted_ = fitted; }
 
-  const BoneTracks& bones() const { return bones_; }
-  const std::vector<int>& parents() const { return parents_; }
-  const std::vector<PointWeights>& weights() const { return weights_; }
+  // Helper, frame. Collects the errors too.
+  std::vector<std::vector<Transform>> run() {
+    std::vector<std::vector<Transform>> tracks(found_.helpers.size());
+    for (std::size_t first = 0; first < bones_.size(); first += kFramesPerBlock) {
+      block(first, std::min(bones_.size(), first + kFramesPerBlock), tracks);
+    }
+    return tracks;
+  }
+  double rms_m() const {
+    return std::sqrt(sum_m2_ / static_cast<double>(rest_.size() * bones_.size()));
+  }
+  double max_m() const { return max_m_; }
 
  private:
-  void tell(int done) const {
-    const double all = std::max(1, options_.helperBones + options_.iterations);
-    if (options_.progress) options_.progress(done / all);
-  }
-  double rms_m() {
-    squaredErrors(problem_, weights_, bones_, error_m2_);
-    return rmsOf(error_m2_, problem_.frameCount);
-  }
-  void fitWeights(std::span<const std::uint32_t> points) {
-    fit_.fit(bones_, parents_, points, weights_);
-  }
-  HelperSeed seed() {
-    squaredErrors(problem_, weights_, bones_, error_m2_);
-    const auto helpers = static_cast<std::size_t>(options_.helperBones);
-    const std::size_t patch = std::max<std::size_t>(12, problem_.pointCount() / (4 * helpers));
-    const HelperSeed found = seedHelper(problem_, graph_, rig_, bones_, error_m2_, seeds_, patch);
-    seeds_.push_back(found.point);
-    return found;
-  }
-  // Fitted to its surroundings at once, so that the next one sees what is left.
-  void settle(int parent) {
-    std::vector<std::uint32_t> around;
-    for (const std::uint32_t i : everyPoint_) {
-      if (fit_.mayFollow(i, parent)) around.push_back(i);
+  void block(std::size_t first, std::size_t last, std::vector<std::vector<Transform>>& tracks) {
+    std::vector<std::size_t> chosen(last - first);
+    std::iota(chosen.begin(), chosen.end(), first);
+    const SkinningProblem problem = problemOf(rest_, targets_, chosen);
+    BoneTracks all = tracksOf(bones_, chosen);
+    const std::size_t rigBones = all.boneCount();
+    for (std::size_t h = 0; h < tracks.size(); ++h) all.add(start(h, first, last));
+    fitHelperMotions(problem, found_.weights, rigBones, kLastSweeps, all);
+    for (std::size_t h = 0; h < tracks.size(); ++h) {
+      const std::span<const Transform> track = all.track(rigBones + h);
+      tracks[h].insert(tracks[h].end(), track.begin(), track.end());
     }
-    fitWeights(around);
-    fitHelperMotions(problem_, weights_, rigBoneCount_, 1, bones_);
-    fitWeights(around);
+    std::vector<double> error_m2;
+    squaredErrors(problem, found_.weights, all, chosen.size(), error_m2);
+    sum_m2_ = std::accumulate(error_m2.begin(), error_m2.end(), sum_m2_);
+    max_m_ = std::max(max_m_, largestError(problem, found_.weights, all));
   }
-  void addHelper() {
-    const HelperSeed found = seed();
-    bones_.add(found.track);
-    parents_.push_back(found.parent);
-    settle(found.parent);
-  }
-  bool moveIdleHelpers() {
-    std::vector<double> carried(parents_.size(), 0.0);
-    for (const PointWeights& w : weights_) {
-      for (std::size_t k = 0; k < PointWeights::kMost && w.weight[k] > 0; ++k) {
-        if (w.joint[k] >= rigBoneCount_) {
-          carried[w.joint[k] - rigBoneCount_] += static_cast<double>(w.weight[k]);
-        }
+
+  std::vector<Transform> start(std::size_t helper, std::size_t first, std::size_t last) const {
+    const auto parent = static_cast<std::size_t>(found_.helpers[helper].parent);
+    std::vector<Transform> track;
+    std::size_t k = 0;
+    for (std::size_t f = first; f < last; ++f) {
+      while (k + 1 < fitted_.size() && fitted_[k + 1] + fitted_[k] <= 2 * f) ++k;
+      if (fitted_.empty()) {
+        track.push_back(bones_[f][parent]);
+      } else if (f == fitted_[k]) {
+        track.push_back(found_.helpers[helper].world[k]);
+      } else {
+        track.push_back(bones_[f][parent] * bones_[fitted_[k]][parent].inverse() *
+                        found_.helpers[helper].world[k]);
       }
     }
-    bool moved = false;
-    for (std::size_t h = 0; h < parents_.size(); ++h) {
-      if (carried[h] >= kLeastCarried) continue;
-      const HelperSeed found = seed();
-      std::copy(found.track.begin(), found.track.end(), bones_.track(rigBoneCount_ + h).begin());
-      parents_[h] = found.parent;
-      settle(found.parent);
-      moved = true;
-    }
-    return moved;
+    return track;
   }
 
-  const SkinningProblem& problem_;
-  const PointGraph& graph_;
-  std::span<const PointWeights> rig_;
-  std::size_t rigBoneCount_;
-  const DecompositionOptions& options_;
-  WeightFit fit_;
-  BoneTracks bones_;
-  std::vector<int> parents_;  // per helper
-  std::vector<PointWeights> weights_;
-  std::vector<std::uint32_t> everyPoint_, seeds_;
-  std::vector<double> error_m2_;
-  double noError_m_ = 0;
+  std::span<const Eigen::Vector3f> rest_;
+  const SkinningDecomposition& found_;
+  const BoneFrames& bones_;
+  const PointFrames& targets_;
+  std::span<const std::size_t> fitted_;
+  double sum_m2_ = 0, max_m_ = 0;
 };
 
-// Helpers' motions in all frames: at first as they lie to their parents in the nearest fitted
-// frame.
-BoneTracks spreadHelpers(const Alternation& fitted, std::span<const std::size_t> chosen,
-                         BoneTracks all) {
-  const std::size_t rigBones = all.boneCount();
-  for (std::size_t h = 0; h < fitted.parents().size(); ++h) {
-    const auto parent = static_cast<std::size_t>(fitted.parents()[h]);
-    std::vector<Transform> track(all.frameCount());
-    std::size_t k = 0;
-    for (std::size_t f = 0; f < track.size(); ++f) {
-      while (k + 1 < chosen.size() && chosen[k + 1] + chosen[k] <= 2 * f) ++k;
-      track[f] = f == chosen[k] ? fitted.bones().at(rigBones + h, k)
-                                : all.at(parent, f) * all.at(parent, chosen[k]).inverse() *
-                                      fitted.bones().at(rigBones + h, k);
-    }
-    all.add(track);
-  }
-  return all;
-}
-
 // Leaves out helpers that nothing follows.
-void collect(const SkinningProblem& problem, const Alternation& fitted, const BoneTracks& bones,
+void collect(std::span<const Eigen::Vector3f> rest, const HelperSearch& fitted,
              SkinningDecomposition& out) {
-  const std::size_t rigBones = bones.boneCount() - fitted.parents().size();
-  std::vector<double> mass(fitted.parents().size(), 0.0);
-  std::vector<Vec3> moment(mass.size(), Vec3::Zero());
+  const std::size_t helpers = fitted.helpers().size();
+  const std::size_t rigBones = fitted.bones().boneCount() - helpers;
+  std::vector<double> mass(helpers, 0.0);
+  std::vector<Vec3> moment(helpers, Vec3::Zero());
   out.weights = fitted.weights();
   for (std::size_t i = 0; i < out.weights.size(); ++i) {
     for (std::size_t k = 0; k < PointWeights::kMost && out.weights[i].weight[k] > 0; ++k) {
@@ -210,33 +157,64 @@ void collect(const SkinningProblem& problem, const Alternation& fitted, const Bo
       const std::size_t h = out.weights[i].joint[k] - rigBones;
       const auto w = static_cast<double>(out.weights[i].weight[k]);
       mass[h] += w;
-      moment[h] += w * problem.rest_m[i];
+      moment[h] += w * rest[i].cast<double>();
     }
   }
-  std::vector<std::uint16_t> number(mass.size(), 0);
-  for (std::size_t h = 0; h < mass.size(); ++h) {
+  std::vector<std::uint16_t> number(helpers, 0);
+  for (std::size_t h = 0; h < helpers; ++h) {
     if (mass[h] <= 0) continue;
     number[h] = static_cast<std::uint16_t>(rigBones + out.helpers.size());
-    const std::span<const Transform> track = bones.track(rigBones + h);
-    out.helpers.push_back({{track.begin(), track.end()}, moment[h] / mass[h], fitted.parents()[h]});
+    const std::span<const Transform> track = fitted.bones().track(rigBones + h);
+    out.helpers.push_back(
+        {{track.begin(), track.end()}, moment[h] / mass[h], fitted.helpers()[h].parent});
   }
-  for (PointWeights& w : out.weights) {
+  for (std::size_t i = 0; i < out.weights.size(); ++i) {
+    PointWeights& w = out.weights[i];
     for (std::size_t k = 0; k < PointWeights::kMost && w.weight[k] > 0; ++k) {
-      if (w.joint[k] >= rigBones) w.joint[k] = number[w.joint[k] - rigBones];
+      if (w.joint[k] < rigBones) continue;
+      w.joint[k] = number[w.joint[k] - rigBones];
+      SkinningDecomposition::Helper& helper = out.helpers[w.joint[k] - rigBones];
+      helper.radius_m =
+          std::max(helper.radius_m, (rest[i].cast<double>() - helper.center_m).norm());
     }
   }
 }
 
+// Whether the rig's own skinning does it; fills in its errors.
+bool isPlain(std::span<const Eigen::Vector3f> rest, std::span<const PointWeights> weights,
+             const BoneFrames& bones, const PointFrames& frames, SkinningDecomposition& out) {
+  const SkinningDecomposition plain{{}, {weights.begin(), weights.end()}};
+  HelperSpread spread(rest, plain, bones, frames);
+  spread.run();
+  Box box;
+  for (const Eigen::Vector3f& p : rest) box.add(p.cast<double>());
+  if (spread.max_m() > kPlain * box.size().norm()) return false;
+  out.weights = plain.weights;
+  out.rms_m = spread.rms_m();
+  out.max_m = spread.max_m();
+  out.plain = true;
+  return true;
+}
+
 void check(std::span<const Eigen::Vector3f> rest, std::span<const PointWeights> weights,
-           const std::vector<std::vector<Transform>>& bones, const PointFrames& frames,
+           const BoneFrames& bones, const PointFrames& frames,
            const DecompositionOptions& options) {
   if (rest.empty() || frames.empty() || bones.size() != frames.size() || bones[0].empty() ||
       weights.size() != rest.size()) {
     throw Error("a skinning decomposition needs points, weights, and bones for every frame");
   }
   if (options.influences < 1 || options.influences > static_cast<int>(PointWeights::kMost) ||
-      options.helperBones < 0 || options.helperBones > 512) {
+      std::min(options.helperBones, options.mostHelpers) < 0 ||
+      std::max(options.helperBones, options.mostHelpers) > 512) {
     throw Error("a skinning decomposition takes 1 to 8 influences and 0 to 512 helper bones");
+  }
+  const std::vector<std::size_t>& lengths = options.motionFrames;
+  if (!lengths.empty() &&
+      std::accumulate(lengths.begin(), lengths.end(), std::size_t{0}) != frames.size()) {
+    throw Error("the motions of a skinning decomposition must have all of its frames");
+  }
+  for (const std::vector<Transform>& pose : options.kept) {
+    if (pose.size() != bones[0].size()) throw Error("every kept pose must have all bones");
   }
   for (std::size_t f = 0; f < frames.size(); ++f) {
     if (frames[f].size() != rest.size() || bones[f].size() != bones[0].size()) {
@@ -250,31 +228,62 @@ void check(std::span<const Eigen::Vector3f> rest, std::span<const PointWeights> 
 
 }  // namespace
 
+PointFrames plainSkinning(std::span<const Eigen::Vector3f> rest,
+                          std::span<const PointWeights> weights, const BoneFrames& bones) {
+  PointFrames frames(bones.size(), std::vector<Eigen::Vector3f>(rest.size()));
+  parallelFor(frames.size(), [&](std::size_t f) {
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      frames[f][i] = blendBones(weights[i], bones[f]).point(rest[i].cast<double>()).cast<float>();
+    }
+  });
+  return frames;
+}
+
+std::vector<std::vector<Transform>> fitHelpers(std::span<const Eigen::Vector3f> rest,
+                                               const SkinningDecomposition& found,
+                                               const BoneFrames& bones,
+                                               const PointFrames& targets) {
+  return HelperSpread(rest, found, bones, targets).run();
+}
+
+double restingError_m(std::span<const Eigen::Vector3f> rest, const SkinningDecomposition& found,
+                      const BoneFrames& bones, const PointFrames& targets) {
+  std::vector<double> largest(bones.size(), 0.0);
+  parallelFor(bones.size(), [&](std::size_t f) {
+    std::vector<Transform> all = bones[f];
+    for (const auto& helper : found.helpers) {
+      all.push_back(bones[f][static_cast<std::size_t>(helper.parent)]);
+    }
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const Vec3 p = blendBones(found.weights[i], all).point(rest[i].cast<double>());
+      largest[f] = std::max(largest[f], (p - targets[f][i].cast<double>()).norm());
+    }
+  });
+  return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
+}
+
 SkinningDecomposition decomposeSkinning(std::span<const Eigen::Vector3f> rest,
                                         std::span<const std::array<std::uint32_t, 3>> triangles,
                                         std::span<const PointWeights> weights,
-                                        const std::vector<std::vector<Transform>>& bones,
-                                        const PointFrames& frames,
+                                        const BoneFrames& bones, const PointFrames& frames,
                                         const DecompositionOptions& options) {
   check(rest, weights, bones, frames, options);
-  const PointGraph graph(rest.size(), triangles);
-  const std::vector<std::size_t> chosen = fittedFrames(frames.size());
-  const SkinningProblem some = problemOf(rest, frames, chosen);
-  Alternation alternation(some, graph, weights, tracksOf(bones, chosen), options);
-  alternation.run();
-
-  std::vector<std::size_t> every(frames.size());
-  std::iota(every.begin(), every.end(), std::size_t{0});
-  const SkinningProblem all = problemOf(rest, frames, every);
-  BoneTracks tracks = spreadHelpers(alternation, chosen, tracksOf(bones, every));
-  fitHelperMotions(all, alternation.weights(), bones[0].size(), 4, tracks);
-
   SkinningDecomposition out;
-  std::vector<double> error_m2;
-  squaredErrors(all, alternation.weights(), tracks, error_m2);
-  out.rms_m = rmsOf(error_m2, frames.size());
-  out.max_m = largestError(all, alternation.weights(), tracks);
-  collect(all, alternation, tracks, out);
+  if (isPlain(rest, weights, bones, frames, out)) return out;
+  const PointGraph graph(rest.size(), triangles);
+  const std::vector<std::size_t> chosen = fittedFrames(frames.size(), options.motionFrames);
+  const SkinningProblem problem =
+      problemOf(rest, frames, chosen, plainSkinning(rest, weights, options.kept));
+  HelperSearch search(problem, chosen.size(), graph, weights, tracksOf(bones, chosen, options.kept),
+                      options);
+  search.run();
+  collect(rest, search, out);
+  HelperSpread spread(rest, out, bones, frames);
+  spread.startFrom(chosen);
+  std::vector<std::vector<Transform>> tracks = spread.run();
+  for (std::size_t h = 0; h < tracks.size(); ++h) out.helpers[h].world = std::move(tracks[h]);
+  out.rms_m = spread.rms_m();
+  out.max_m = spread.max_m();
   return out;
 }
 

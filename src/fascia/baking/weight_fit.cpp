@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include <fascia/baking/simplex_least_squares.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -16,6 +15,7 @@ namespace {
 constexpr double kPullOverSize = 5e-4;
 // Joints with less than this share of a point do not count as its neighbourhood.
 constexpr float kLeastShare = 0.01f;
+constexpr std::size_t kPointsPerTask = 64;
 
 double weightOf(const PointWeights& weights, std::size_t bone) {
   for (std::size_t k = 0; k < PointWeights::kMost && weights.weight[k] > 0; ++k) {
@@ -44,7 +44,7 @@ double sizeOf(const std::vector<Vec3>& points) {
 }
 
 // Heaviest first; equal ones by bone, so that the order is always the same.
-PointWeights packed(const std::vector<std::size_t>& bones, const CandidateVector& w) {
+PointWeights packed(std::span<const std::size_t> bones, const CandidateVector& w) {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t c = 0; c < bones.size(); ++c) {
     const double weight = w[static_cast<Eigen::Index>(c)];
@@ -100,100 +100,132 @@ void WeightFit::findAdjacentJoints() {
   }
 }
 
-bool WeightFit::mayFollow(std::size_t point, int parent) const {
-  const auto p = static_cast<std::size_t>(parent);
+bool WeightFit::mayFollow(std::size_t point, const HelperPlace& helper) const {
+  if ((problem_.rest_m[point] - helper.center_m).squaredNorm() > helper.reach_m * helper.reach_m) {
+    return false;
+  }
+  const auto p = static_cast<std::size_t>(helper.parent);
   return std::any_of(nearby_[point].begin(), nearby_[point].end(),
                      [&](std::uint16_t joint) { return adjacent_[joint * rigBoneCount_ + p]; });
 }
 
-void WeightFit::fit(const BoneTracks& bones, std::span<const int> parents,
-                    std::span<const std::uint32_t> points,
+// What all points of one fit share.
+struct WeightFit::Task {
+  const BoneMoments& moments;
+  std::span<const HelperPlace> helpers;
+  std::span<const PointWeights> before;
+
+  // The rig's joint that a bone is, or hangs from.
+  std::size_t jointOf(std::size_t bone, std::size_t rigBones) const {
+    return bone < rigBones ? bone : static_cast<std::size_t>(helpers[bone - rigBones].parent);
+  }
+};
+
+// What one point needs, one after the other.
+struct WeightFit::Scratch {
+  struct Offer {
+    double error = 0;  // squared, if the bone carried the point alone
+    std::size_t bone = 0;
+    double withTarget = 0;  // Σ (T p)·x
+  };
+  Eigen::VectorXd target;
+  std::vector<Offer> offers;
+  std::vector<std::size_t> bones;  // of the offers that are taken
+  CandidateMatrix G;
+  CandidateVector g, start;
+};
+
+void WeightFit::fit(const BoneTracks& bones, std::span<const HelperPlace> helpers,
                     std::vector<PointWeights>& weights) const {
+  const BoneMoments moments(problem_, bones);
   // All from the weights before, so that the order of points does not matter.
-  std::vector<PointWeights> found(points.size());
-  parallelFor(points.size(),
-              [&](std::size_t k) { found[k] = fitPoint(bones, parents, points[k], weights); });
-  for (std::size_t k = 0; k < points.size(); ++k) weights[points[k]] = found[k];
+  const std::vector<PointWeights> before = weights;
+  const Task task{moments, helpers, before};
+  const std::size_t tasks = (weights.size() + kPointsPerTask - 1) / kPointsPerTask;
+  parallelFor(tasks, [&](std::size_t t) {
+    Scratch scratch;
+    const std::size_t end = std::min(weights.size(), (t + 1) * kPointsPerTask);
+    for (std::size_t i = t * kPointsPerTask; i < end; ++i) {
+      weights[i] = fitPoint(task, i, scratch);
+    }
+  });
 }
 
-std::vector<std::size_t> WeightFit::candidates(const BoneTracks& bones,
-                                               std::span<const int> parents,
-                                               std::size_t point) const {
-  std::vector<std::pair<double, std::size_t>> order;
+// At most kMostCandidates bones: those that the point follows now, then those that carry it best by
+// themselves.
+void WeightFit::offerBones(const Task& task, std::size_t point, Scratch& scratch) const {
+  task.moments.target(point, scratch.target);
+  const Eigen::Vector4d p = problem_.rest_m[point].homogeneous();
+  const double own = scratch.target.squaredNorm();
+  scratch.offers.clear();
   const auto offer = [&](std::size_t bone) {
-    double error = 0;
-    for (std::size_t f = 0; f < problem_.frameCount; ++f) {
-      error += (bones.at(bone, f).point(problem_.rest_m[point]) -
-                problem_.target(point, f).cast<double>())
-                   .squaredNorm();
-    }
-    order.emplace_back(error, bone);
+    const double cross = task.moments.withTarget(bone, scratch.target).dot(p);
+    const double square = p.dot(task.moments.between(bone, bone) * p);
+    const bool used = weightOf(task.before[point], bone) > 0;
+    scratch.offers.push_back({used ? -1 : square - 2 * cross + own, bone, cross});
   };
   for (const std::uint16_t joint : nearby_[point]) offer(joint);
-  for (std::size_t h = 0; h < parents.size(); ++h) {
-    if (mayFollow(point, parents[h])) offer(rigBoneCount_ + h);
+  for (std::size_t h = 0; h < task.helpers.size(); ++h) {
+    if (mayFollow(point, task.helpers[h])) offer(rigBoneCount_ + h);
   }
-  std::sort(order.begin(), order.end());
-  std::vector<std::size_t> out;
-  for (const auto& [error, bone] : order) {
-    if (out.size() < static_cast<std::size_t>(kMostCandidates)) out.push_back(bone);
-  }
-  return out;
+  std::sort(scratch.offers.begin(), scratch.offers.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.error, a.bone) < std::pair(b.error, b.bone);
+  });
+  scratch.offers.resize(std::min(scratch.offers.size(), static_cast<std::size_t>(kMostCandidates)));
 }
 
 // ½ |D w|² with a column T p - x per candidate: as the weights sum to one, that is half the squared
-// error. It keeps the digits that the usual normal equations lose, as bones move alike.
-PointWeights WeightFit::fitPoint(const BoneTracks& bones, std::span<const int> parents,
-                                 std::size_t point, std::span<const PointWeights> before) const {
-  const std::vector<std::size_t> offered = candidates(bones, parents, point);
-  const auto count = static_cast<Eigen::Index>(offered.size());
-  const auto frames = static_cast<Eigen::Index>(problem_.frameCount);
-  Eigen::MatrixXd D(3 * frames, count);
-  for (Eigen::Index c = 0; c < count; ++c) {
-    const std::span<const Transform> track = bones.track(offered[static_cast<std::size_t>(c)]);
-    for (Eigen::Index f = 0; f < frames; ++f) {
-      const auto frame = static_cast<std::size_t>(f);
-      D.col(c).segment<3>(3 * f) =
-          track[frame].point(problem_.rest_m[point]) - problem_.target(point, frame).cast<double>();
+// error.
+PointWeights WeightFit::fitPoint(const Task& task, std::size_t point, Scratch& scratch) const {
+  offerBones(task, point, scratch);
+  const auto count = static_cast<Eigen::Index>(scratch.offers.size());
+  const Eigen::Vector4d p = problem_.rest_m[point].homogeneous();
+  const double own = scratch.target.squaredNorm();
+  scratch.G.resize(count, count);
+  scratch.g = scratch.start = CandidateVector::Zero(count);
+  scratch.bones.clear();
+  for (Eigen::Index a = 0; a < count; ++a) {
+    const Scratch::Offer& left = scratch.offers[static_cast<std::size_t>(a)];
+    scratch.bones.push_back(left.bone);
+    scratch.start[a] = weightOf(task.before[point], left.bone);
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      const Scratch::Offer& right = scratch.offers[static_cast<std::size_t>(b)];
+      const double square = p.dot(task.moments.between(left.bone, right.bone) * p);
+      scratch.G(a, b) = scratch.G(b, a) = square - left.withTarget - right.withTarget + own;
     }
   }
-  CandidateMatrix G = D.transpose() * D;
-  CandidateVector g = CandidateVector::Zero(count);
-  addNeighborTerm(offered, point, before, G, g);
-  addRigTerm(offered, parents, point, G, g);
-  return packed(offered, solveOnSimplex(G, g, influences_));
+  addNeighborTerm(task, point, scratch);
+  addRigTerm(task, point, scratch);
+  return packed(scratch.bones, solveOnSimplex(scratch.G, scratch.g, influences_, scratch.start));
 }
 
 // ½ λ |w - w̄|², w̄ the mean of the neighbours' weights; the point's own where it has none.
-void WeightFit::addNeighborTerm(std::span<const std::size_t> offered, std::size_t point,
-                                std::span<const PointWeights> before, CandidateMatrix& G,
-                                CandidateVector& g) const {
+void WeightFit::addNeighborTerm(const Task& task, std::size_t point, Scratch& scratch) const {
   const double lambda = static_cast<double>(problem_.frameCount) * stiffness_m2_;
   const std::span<const std::uint32_t> around = graph_.neighbors(point);
-  for (std::size_t c = 0; c < offered.size(); ++c) {
+  for (std::size_t c = 0; c < scratch.bones.size(); ++c) {
+    const std::size_t bone = scratch.bones[c];
     double mean = 0;
-    for (const std::uint32_t j : around) mean += weightOf(before[j], offered[c]);
-    mean = around.empty() ? weightOf(before[point], offered[c])
+    for (const std::uint32_t j : around) mean += weightOf(task.before[j], bone);
+    mean = around.empty() ? weightOf(task.before[point], bone)
                           : mean / static_cast<double>(around.size());
     const auto k = static_cast<Eigen::Index>(c);
-    G(k, k) += lambda;
-    g[k] += lambda * mean;
+    scratch.G(k, k) += lambda;
+    scratch.g[k] += lambda * mean;
   }
 }
 
 // ½ λ Σ_j (Σ w of joint j and its helpers - rig's weight of j)².
-void WeightFit::addRigTerm(std::span<const std::size_t> offered, std::span<const int> parents,
-                           std::size_t point, CandidateMatrix& G, CandidateVector& g) const {
+void WeightFit::addRigTerm(const Task& task, std::size_t point, Scratch& scratch) const {
   const double lambda = static_cast<double>(problem_.frameCount) * stiffness_m2_;
-  const auto jointOf = [&](std::size_t bone) {
-    return bone < rigBoneCount_ ? bone : static_cast<std::size_t>(parents[bone - rigBoneCount_]);
-  };
-  for (std::size_t a = 0; a < offered.size(); ++a) {
-    const std::size_t joint = jointOf(offered[a]);
+  for (std::size_t a = 0; a < scratch.bones.size(); ++a) {
+    const std::size_t joint = task.jointOf(scratch.bones[a], rigBoneCount_);
     const auto r = static_cast<Eigen::Index>(a);
-    g[r] += lambda * weightOf(rig_[point], joint);
-    for (std::size_t b = 0; b < offered.size(); ++b) {
-      if (jointOf(offered[b]) == joint) G(r, static_cast<Eigen::Index>(b)) += lambda;
+    scratch.g[r] += lambda * weightOf(rig_[point], joint);
+    for (std::size_t b = 0; b < scratch.bones.size(); ++b) {
+      if (task.jointOf(scratch.bones[b], rigBoneCount_) == joint) {
+        scratch.G(r, static_cast<Eigen::Index>(b)) += lambda;
+      }
     }
   }
 }

@@ -3,17 +3,25 @@
 #include <span>
 #include <vector>
 
+#include <fascia/baking/bone_moments.h>
 #include <fascia/baking/bone_tracks.h>
 #include <fascia/baking/point_graph.h>
 #include <fascia/baking/simplex_least_squares.h>
 
 namespace fascia {
 
+// Where a helper is at home.
+struct HelperPlace {
+  int parent = 0;  // the rig's joint that it hangs from
+  Vec3 center_m = Vec3::Zero();
+  double reach_m = 0;  // points farther away are not offered it
+};
+
 // Finds the weights of points for bones whose motion is known.
 //
 // A point is only offered bones of its own neighbourhood: joints that the rig gives to points
-// around it, and helpers that hang from one of these or from a joint next to them. That keeps a
-// left hand from following a right foot that happens to move alike in this one motion.
+// around it, and helpers that are near and hang from one of these or from a joint next to them.
+// That keeps a left hand from following a right foot that happens to move alike in this one motion.
 //
 // Where the motion leaves a choice, two weak terms decide: weights like the neighbours' (Le & Deng
 // 2014 do so with a Laplacian), and weights that agree with the rig's own when a helper counts as
@@ -23,24 +31,18 @@ class WeightFit {
   WeightFit(const SkinningProblem& problem, const PointGraph& graph,
             std::span<const PointWeights> rigWeights, std::size_t rigBoneCount, int influences);
 
-  // parents: the rig's joint of every helper among the bones. `weights` is start and result.
-  void fit(const BoneTracks& bones, std::span<const int> parents,
-           std::span<const std::uint32_t> points, std::vector<PointWeights>& weights) const;
-
-  // Whether a helper that hangs from a joint may be offered to a point.
-  bool mayFollow(std::size_t point, int parent) const;
+  // Of all points. `weights` is start and result; neighbours count as they were before.
+  void fit(const BoneTracks& bones, std::span<const HelperPlace> helpers,
+           std::vector<PointWeights>& weights) const;
 
  private:
-  PointWeights fitPoint(const BoneTracks& bones, std::span<const int> parents, std::size_t point,
-                        std::span<const PointWeights> before) const;
-  // At most kMostCandidates bones, those first that carry the point best by themselves.
-  std::vector<std::size_t> candidates(const BoneTracks& bones, std::span<const int> parents,
-                                      std::size_t point) const;
-  void addNeighborTerm(std::span<const std::size_t> offered, std::size_t point,
-                       std::span<const PointWeights> before, CandidateMatrix& G,
-                       CandidateVector& g) const;
-  void addRigTerm(std::span<const std::size_t> offered, std::span<const int> parents,
-                  std::size_t point, CandidateMatrix& G, CandidateVector& g) const;
+  struct Scratch;
+  struct Task;
+  PointWeights fitPoint(const Task& task, std::size_t point, Scratch& scratch) const;
+  bool mayFollow(std::size_t point, const HelperPlace& helper) const;
+  void offerBones(const Task& task, std::size_t point, Scratch& scratch) const;
+  void addNeighborTerm(const Task& task, std::size_t point, Scratch& scratch) const;
+  void addRigTerm(const Task& task, std::size_t point, Scratch& scratch) const;
   void findNearbyJoints();
   void findAdjacentJoints();
 

@@ -1,6 +1,7 @@
 #include <fascia/io/glb_builder.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fascia/base/error.h>
@@ -9,7 +10,8 @@
 namespace fascia {
 namespace {
 
-constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+constexpr int kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
+              kFloat = 5126;
 constexpr std::size_t kShortLimit = 65535;  // index 65535 restarts primitives
 
 void padTo4(std::string& bytes, char with) {
@@ -89,8 +91,12 @@ std::size_t GlbBuilder::addPackedIndices(std::span<const std::uint32_t> indices,
 std::size_t GlbBuilder::addIndices(std::span<const std::uint32_t> indices,
                                    std::size_t vertexCount) {
   const bool small = vertexCount <= kShortLimit;
-  return addAccessor(addPackedIndices(indices, small, Target::indices),
-                     small ? kUnsignedShort : kUnsignedInt, indices.size(), "SCALAR");
+  const auto [found, isNew] =
+      indices_.try_emplace({small, std::vector<std::uint32_t>(indices.begin(), indices.end())}, 0);
+  if (isNew)
+    found->second = addAccessor(addPackedIndices(indices, small, Target::indices),
+                                small ? kUnsignedShort : kUnsignedInt, indices.size(), "SCALAR");
+  return found->second;
 }
 
 std::size_t GlbBuilder::addScalars(std::span<const float> values, bool withBounds) {
@@ -107,6 +113,58 @@ std::size_t GlbBuilder::addScalars(std::span<const float> values, bool withBound
 std::size_t GlbBuilder::addQuaternions(std::span<const Eigen::Vector4f> values) {
   return addAccessor(addView(values.data(), values.size_bytes(), Target::none), kFloat,
                      values.size(), "VEC4");
+}
+
+std::size_t GlbBuilder::addNormalized(std::size_t view, int componentType, std::size_t count,
+                                      const char* type) {
+  const std::size_t index = addAccessor(view, componentType, count, type);
+  accessor(index)["normalized"] = true;
+  return index;
+}
+
+std::size_t GlbBuilder::addShortQuaternions(std::span<const Eigen::Vector4f> values) {
+  std::vector<std::int16_t> packed;
+  for (const Eigen::Vector4f& q : values) {
+    for (const float c : q)
+      packed.push_back(static_cast<std::int16_t>(std::lround(32767 * std::clamp(c, -1.0f, 1.0f))));
+  }
+  return addNormalized(addView(packed.data(), packed.size() * sizeof packed[0], Target::none),
+                       kShort, values.size(), "VEC4");
+}
+
+std::size_t GlbBuilder::addMatrices(std::span<const Eigen::Matrix4f> values) {
+  return addAccessor(addView(values.data(), values.size_bytes(), Target::none), kFloat,
+                     values.size(), "MAT4");
+}
+
+std::size_t GlbBuilder::addShares(std::span<const float> values) {
+  std::vector<std::uint16_t> packed;
+  for (const float v : values)
+    packed.push_back(static_cast<std::uint16_t>(std::lround(65535 * std::clamp(v, 0.0f, 1.0f))));
+  return addNormalized(addView(packed.data(), packed.size() * sizeof packed[0], Target::none),
+                       kUnsignedShort, values.size(), "SCALAR");
+}
+
+std::size_t GlbBuilder::addJoints(std::span<const std::uint16_t> values) {
+  const std::size_t count = values.size() / 4;
+  if (std::all_of(values.begin(), values.end(), [](std::uint16_t v) { return v < 256; })) {
+    const std::vector<std::uint8_t> small(values.begin(), values.end());
+    return addAccessor(addView(small.data(), small.size(), Target::vertices), kUnsignedByte, count,
+                       "VEC4");
+  }
+  return addAccessor(addView(values.data(), values.size_bytes(), Target::vertices), kUnsignedShort,
+                     count, "VEC4");
+}
+
+std::size_t GlbBuilder::addWeights(std::span<const std::uint16_t> values) {
+  return addNormalized(addView(values.data(), values.size_bytes(), Target::vertices),
+                       kUnsignedShort, values.size() / 4, "VEC4");
+}
+
+std::size_t GlbBuilder::addTimes(std::span<const float> values) {
+  const auto [found, isNew] = times_.try_emplace({values.begin(), values.end()}, 0);
+  if (isNew) found->second = addScalars(values, true);
+  return found->second;
 }
 
 std::size_t GlbBuilder::addSparseVectors(std::span<const Eigen::Vector3f> values, bool withBounds) {

@@ -44,6 +44,14 @@ Positions difference(const Positions& value, const Positions& base, double unsee
   return out;
 }
 
+}  // namespace
+
+void GltfAnimation::add(std::size_t times, std::size_t values, std::size_t node, const char* path) {
+  samplers.push_back({{"input", times}, {"output", values}, {"interpolation", "LINEAR"}});
+  channels.push_back(
+      {{"sampler", samplers.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+}
+
 std::size_t addSkinMaterial(const SkinDef& def, const Texture& texture, GlbBuilder& glb) {
   GltfJson surface = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}};
   if (texture.empty()) {
@@ -55,14 +63,6 @@ std::size_t addSkinMaterial(const SkinDef& def, const Texture& texture, GlbBuild
     surface["baseColorTexture"] = {{"index", index}};
   }
   return glb.add("materials", {{"name", "skin"}, {"pbrMetallicRoughness", surface}});
-}
-
-}  // namespace
-
-void GltfAnimation::add(std::size_t times, std::size_t values, std::size_t node, const char* path) {
-  samplers.push_back({{"input", times}, {"output", values}, {"interpolation", "LINEAR"}});
-  channels.push_back(
-      {{"sampler", samplers.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
 }
 
 GlbBuilder::Json linearColor(float r, float g, float b) {

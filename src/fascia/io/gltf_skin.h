@@ -15,6 +15,9 @@ struct GltfAnimation {
   void add(std::size_t times, std::size_t values, std::size_t node, const char* path);
 };
 
+// The skin's colour or picture; returns the material.
+std::size_t addSkinMaterial(const SkinDef& def, const Texture& texture, GlbBuilder& glb);
+
 // Adds the skin's mesh and material; returns the mesh. kept: indices of the frames that became the
 // base (the first) and the morph targets (the others).
 std::size_t addSkinMesh(const SkinDef& def, const Recording& recording, const Texture& texture,

@@ -6,10 +6,11 @@ namespace fascia {
 namespace {
 
 // Drops values that lie between their neighbours within `tolerance` (metres, or about radians / 2).
+// A track that does not move is one key, or none where the node is there already.
 template <class Value, class AddValues>
 void addTrack(const std::vector<float>& times, const std::vector<Value>& values, float tolerance,
-              std::size_t node, const char* path, GlbBuilder& glb, GltfAnimation& animation,
-              const AddValues& addValues) {
+              bool needed, std::size_t node, const char* path, GlbBuilder& glb,
+              GltfAnimation& animation, const AddValues& addValues) {
   const std::vector<std::size_t> kept =
       keepFrames(values.size(), [&](std::size_t a, std::size_t b) {
         for (std::size_t f = a + 1; f < b; ++f) {
@@ -28,8 +29,9 @@ void addTrack(const std::vector<float>& times, const std::vector<Value>& values,
     keptValues.push_back(values[k]);
     moves = moves || values[k] != values[0];
   }
-  if (!moves) return;
-  const std::size_t input = glb.addScalars(keptTimes, true);
+  if (!moves && !needed) return;
+  if (!moves) keptTimes.resize(1), keptValues.resize(1);
+  const std::size_t input = glb.addTimes(keptTimes);
   animation.add(input, addValues(keptValues), node, path);
 }
 
@@ -55,12 +57,15 @@ GlbBuilder::Json placeNode(const std::string& name, const PlaceTrack& track) {
 }
 
 void addTracks(const std::vector<float>& times, const PlaceTrack& track, std::size_t node,
-               GlbBuilder& glb, GltfAnimation& animation, const TrackTolerance& tolerance) {
-  addTrack(
-      times, track.translations, tolerance.metres, node, "translation", glb, animation,
-      [&](const auto& values) { return glb.addVectors(values, false, GlbBuilder::Target::none); });
-  addTrack(times, track.rotations, tolerance.halfRadians, node, "rotation", glb, animation,
-           [&](const auto& values) { return glb.addQuaternions(values); });
+               GlbBuilder& glb, GltfAnimation& animation, const TrackOptions& options) {
+  addTrack(times, track.translations, options.metres, options.translations, node, "translation",
+           glb, animation, [&](const auto& values) {
+             return glb.addVectors(values, false, GlbBuilder::Target::none);
+           });
+  addTrack(times, track.rotations, options.halfRadians, options.rotations, node, "rotation", glb,
+           animation, [&](const auto& values) {
+             return options.small ? glb.addShortQuaternions(values) : glb.addQuaternions(values);
+           });
 }
 
 }  // namespace fascia

@@ -19,13 +19,16 @@ struct PlaceTrack {
 
 // A node that stands where the track starts.
 GlbBuilder::Json placeNode(const std::string& name, const PlaceTrack& track);
-// What a frame may differ from the blend of its neighbours to be dropped. Joints' skins are morphs
-// of their own, so that their nodes need no more than what can be seen.
-struct TrackTolerance {
+struct TrackOptions {
+  // What a frame may differ from the blend of its neighbours to be dropped. Where skins are morphs
+  // of their own, their joints' nodes need no more than what can be seen.
   float metres = 1e-5f, halfRadians = 1e-4f;
+  // Told even if nothing moves: the node stands elsewhere, or another animation moves it.
+  bool translations = false, rotations = false;
+  bool small = false;  // rotations in 16 bits
 };
-// Animates it; drops frames that lie between their neighbours, and tracks that do not move.
+// Animates it; drops frames that lie between their neighbours.
 void addTracks(const std::vector<float>& times, const PlaceTrack& track, std::size_t node,
-               GlbBuilder& glb, GltfAnimation& animation, const TrackTolerance& tolerance = {});
+               GlbBuilder& glb, GltfAnimation& animation, const TrackOptions& options = {});
 
 }  // namespace fascia

@@ -32,10 +32,13 @@ struct GlbCharacter {
 };
 GlbCharacter addCharacter(const Character& character, const Recording& recording,
                           const GlbOptions& options, GlbBuilder& glb, GltfAnimation& animation);
-// The whole file with one scene of these root nodes, and one animation.
-std::string finishGlb(const std::string& name, const std::string& motion,
-                      const std::vector<std::size_t>& roots, GltfAnimation animation,
-                      GlbBuilder& glb);
+struct NamedAnimation {
+  std::string name;  // empty: the rest posture
+  GltfAnimation animation;
+};
+// The whole file with one scene of these root nodes, and those animations that have channels.
+std::string finishGlb(const std::string& name, const std::vector<std::size_t>& roots,
+                      std::vector<NamedAnimation> animations, GlbBuilder& glb);
 
 // Binary glTF 2.0 (Khronos): the skin with uvs, normals and a baked animation by morph targets (one
 // per kept frame, sparse, blended linearly), the skeleton as animated nodes, the ornaments on their

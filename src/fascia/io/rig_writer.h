@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,29 +21,48 @@ struct RigClip {
   double scale = 1;    // that the model was read with (RigDef::scale)
 };
 
-// How far the written file, read back and played, is from the simulation: all vertices, all frames.
+// How far the written file, read back and played, is from what it should play: all vertices, all
+// frames.
 struct BakeError {
   double rms_mm = 0, max_mm = 0;
 };
 
 struct RigBakeReport {
-  BakeError error;
+  struct Motion {
+    std::string name;
+    BakeError error;
+  };
+  BakeError error;                 // over all motions that were baked
   std::size_t added = 0;           // helper bones or morph targets
   std::vector<std::string> files;  // written
+  std::vector<Motion> baked;       // against the simulation
+  std::vector<Motion> others;      // the file's other motions, against its own skinning
+  bool plain = false;  // nothing moved beyond that skinning: nothing was looked for, nothing added
 };
 
 // Each writes a whole GLB or nothing, and throws Error. Everything of the source file that is not
-// about the baked motion survives: names, joints, materials, pictures, extensions, extras, other
-// meshes and other animations.
+// about the baked motions survives: names, joints, materials, pictures, extensions, extras, other
+// meshes and other animations. All clips are of one model, and have names of their own.
 
-// Helper bones below the rig's joints and new weights: plays in every engine.
-RigBakeReport writeRigAsBones(const RigClip& clip, const DecompositionOptions& options,
+// Helper bones below the rig's joints and new weights, the same for all motions: plays in every
+// engine. In the file's other motions helpers move so that the surface stays as it was there.
+RigBakeReport writeRigAsBones(std::span<const RigClip> clips, const DecompositionOptions& options,
                               const std::string& path);
 
-// Morph targets on top of the rig's own skinning, after those that the file has. Vertices at one
-// place get one vertex' weights, as they were simulated: seams stay closed.
-RigBakeReport writeRigAsMorphs(const RigClip& clip, const MorphOptions& options,
+// Morph targets, the same for all motions, on top of the rig's own skinning, after those that the
+// file has. Vertices at one place get one vertex' weights, as they were simulated: seams stay
+// closed.
+RigBakeReport writeRigAsMorphs(std::span<const RigClip> clips, const MorphOptions& options,
                                const std::string& path);
+
+inline RigBakeReport writeRigAsBones(const RigClip& clip, const DecompositionOptions& options,
+                                     const std::string& path) {
+  return writeRigAsBones(std::span<const RigClip>(&clip, 1), options, path);
+}
+inline RigBakeReport writeRigAsMorphs(const RigClip& clip, const MorphOptions& options,
+                                      const std::string& path) {
+  return writeRigAsMorphs(std::span<const RigClip>(&clip, 1), options, path);
+}
 
 // The rest surface without a skeleton as a GLB, and for every mesh a point cache of all frames in
 // two formats beside it: "fox.glb" gets "fox.pc2" and "fox.mdd", with the mesh' name in between if

@@ -4,6 +4,7 @@
 
 #include <fascia/io/rig_writer_geometry.h>
 #include <fascia/io/rig_writer_motion.h>
+#include <fascia/io/rig_writer_others.h>
 #include <fascia/io/rig_writer_player.h>
 
 namespace fascia {
@@ -11,6 +12,14 @@ namespace {
 
 // Of the model's size: a mesh without a skin that stays this near to its joint stays without.
 constexpr double kRigid = 1e-5;
+// Of the model's size: a helper that moves its points by less gets no keys, and rests on its joint.
+constexpr double kResting = 1e-5;
+// The same in motions that are not baked, and the error in these from which helpers move at all.
+constexpr double kRestingElsewhere = 5e-4, kFollowed = 1e-3;
+// Poses of other motions in which the weights shall play them too.
+constexpr std::size_t kKeptPoses = 45;
+// Helpers' keys in other motions: enough for what is left between two of them.
+constexpr double kOthersRate_hz = 20;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -35,20 +44,55 @@ struct Bone {
   Affine bind_world;  // its node's frame in the bind pose
 };
 
+// A helper's node hangs below an anchor, a joint that is not stretched in one direction.
+struct HelperNode {
+  int node = -1;
+  int anchor = -1;  // -1: none, the top of the scene
+  Affine parent;    // the anchor's frame in the bind pose
+};
+
 class BoneWriter {
  public:
   BoneWriter(RigSource& source, const SkinningDecomposition& found)
       : source_(source), model_(source.clip.model), found_(found) {}
 
-  BakedAnimation write() {
-    source_.separateMeshes();
-    skinLooseParts();
-    straightenBentSkins();
-    const BakedAnimation animation = prepareAnimation(source_);
+  std::vector<PlayedClip> write() {
+    if (!found_.plain) {
+      source_.separateMeshes();
+      skinLooseParts();
+      straightenBentSkins();
+    }
+    std::vector<BakedAnimation> animations;
+    std::vector<PlayedClip> played;
+    for (const RigClip& clip : source_.clips) {
+      animations.push_back(prepareAnimation(source_, clip));
+      played.push_back({clip, animations.back().index, animations.back().start_s});
+    }
+    if (found_.plain) return played;
     addRigBones();
-    addHelpers(animation);
+    for (const SkinningDecomposition::Helper& helper : found_.helpers) addHelper(helper);
+    addTracks(animations);
     for (std::size_t s = 0; s < source_.rig.skins.size(); ++s) writeSkin(static_cast<int>(s));
-    return animation;
+    return played;
+  }
+
+  // Lets helpers move in a motion that is not baked, so that the surface is as it was.
+  void follow(const OtherMotion& other) {
+    const double least_m = kFollowed * model_.size_m();
+    const auto count = static_cast<std::size_t>(std::ceil(other.duration_s * kOthersRate_hz)) + 1;
+    const std::vector<double> times_s = other.times(count);
+    const BoneFrames bones = other.bones(model_, times_s);
+    const PointFrames targets = plainSkinning(model_.points_m, model_.weights, bones);
+    if (restingError_m(model_.points_m, found_, bones, targets) <= least_m) return;
+    const auto tracks = fitHelpers(model_.points_m, found_, bones, targets);
+    std::vector<float> clock;
+    for (const double t : times_s) clock.push_back(static_cast<float>(other.start_s + t));
+    BakedAnimation animation{other.animation, static_cast<float>(other.start_s), -1, true};
+    for (std::size_t h = 0; h < tracks.size(); ++h) {
+      if (rests(h, tracks[h], bones, kRestingElsewhere)) continue;
+      if (animation.times < 0) animation.times = source_.document.addFloats(clock, "SCALAR", true);
+      addRigidChannels(source_, animation, nodes_[h].node, localTrack(h, tracks[h], bones));
+    }
   }
 
  private:
@@ -59,12 +103,16 @@ class BoneWriter {
 
   // Whether all of a part's vertices follow one joint of the rig, as a node below it does.
   bool staysRigid(const RigPart& part) const {
+    return std::all_of(source_.clips.begin(), source_.clips.end(),
+                       [&](const RigClip& clip) { return staysRigid(part, clip); });
+  }
+  bool staysRigid(const RigPart& part, const RigClip& clip) const {
     const int carrier = std::max(source_.rig.carrierOfNode[at(part.node)], 0);
-    const auto& frames = source_.clip.recording.frames;
+    const auto& frames = clip.recording.frames;
     const double least = kRigid * model_.size_m();
     for (std::size_t f = 0; f < frames.size(); ++f) {
-      const Transform motion = source_.clip.joints_world[f][at(carrier)] *
-                               model_.joints[at(carrier)].rest_world.inverse();
+      const Transform motion =
+          clip.joints_world[f][at(carrier)] * model_.joints[at(carrier)].rest_world.inverse();
       for (std::uint32_t v = part.firstVertex; v < part.firstVertex + part.vertexCount; ++v) {
         const Vec3 rest = model_.points_m[model_.vertices[v].point].cast<double>();
         if ((motion.point(rest) - frames[f].skin_m[v].cast<double>()).norm() > least) return false;
@@ -129,44 +177,69 @@ class BoneWriter {
     return name;
   }
 
-  void addHelpers(const BakedAnimation& animation) {
-    const std::vector<std::vector<Transform>> motion = boneFrames(source_.clip);
-    for (const SkinningDecomposition::Helper& helper : found_.helpers) {
-      const int anchor = anchorOf(helper.parent);
-      const Affine parent = anchor < 0 ? source_.unit() : source_.bindOfJoint(anchor);
-      // The helper's frame at rest is its anchor's, moved to where it sits.
-      Bone bone{-1, parent};
-      bone.bind_world.translation() = helper.center_m;
-      Json json{Json::Object{}};
-      json.set("name", freshName());
-      json.set("translation", numbers(parent.inverse() * helper.center_m));
-      if (anchor < 0) {
-        bone.node = source_.addTopNode(std::move(json));
-      } else {
-        bone.node = source_.add("nodes", std::move(json));
-        ensureList(source_.node(source_.rig.nodeOfJoint[at(anchor)]), "children")
-            .list()
-            .push_back(bone.node);
-      }
-      addRigidChannels(source_, animation, bone.node, localTrack(helper, anchor, parent, motion));
-      bones_.push_back(bone);
+  void addHelper(const SkinningDecomposition::Helper& helper) {
+    HelperNode out;
+    out.anchor = anchorOf(helper.parent);
+    out.parent = out.anchor < 0 ? source_.unit() : source_.bindOfJoint(out.anchor);
+    // The helper's frame at rest is its anchor's, moved to where it sits.
+    Affine bind_world = out.parent;
+    bind_world.translation() = helper.center_m;
+    Json json{Json::Object{}};
+    json.set("name", freshName());
+    json.set("translation", numbers(out.parent.inverse() * helper.center_m));
+    if (out.anchor < 0) {
+      out.node = source_.addTopNode(std::move(json));
+    } else {
+      out.node = source_.add("nodes", std::move(json));
+      ensureList(source_.node(source_.rig.nodeOfJoint[at(out.anchor)]), "children")
+          .list()
+          .push_back(out.node);
     }
+    nodes_.push_back(out);
+    bones_.push_back({out.node, bind_world});
+  }
+
+  // The baked motions' frames stand one after the other in the helpers' tracks.
+  void addTracks(const std::vector<BakedAnimation>& animations) {
+    std::size_t first = 0;
+    for (std::size_t c = 0; c < animations.size(); ++c) {
+      const BoneFrames bones = boneFrames(source_.clips[c]);
+      for (std::size_t h = 0; h < nodes_.size(); ++h) {
+        const std::span<const Transform> track(&found_.helpers[h].world[first], bones.size());
+        if (rests(h, track, bones, kResting)) continue;
+        addRigidChannels(source_, animations[c], nodes_[h].node, localTrack(h, track, bones));
+      }
+      first += bones.size();
+    }
+  }
+
+  // Whether a helper stays on its anchor, as far as the points that it carries can tell.
+  bool rests(std::size_t h, std::span<const Transform> track, const BoneFrames& bones,
+             double ofSize) const {
+    const SkinningDecomposition::Helper& helper = found_.helpers[h];
+    const double most_m = ofSize * model_.size_m();
+    for (std::size_t f = 0; f < track.size(); ++f) {
+      const Transform on = nodes_[h].anchor < 0 ? Transform{} : bones[f][at(nodes_[h].anchor)];
+      const double shift = (track[f].point(helper.center_m) - on.point(helper.center_m)).norm();
+      if (shift + helper.radius_m * (track[f].rotation - on.rotation).norm() > most_m) return false;
+    }
+    return true;
   }
 
   // Below an anchor that moves by P from its rest B, the helper's node moves by B⁻¹ P⁻¹ H X, with H
   // its own motion and X its rest, whose axes are B's.
-  static std::vector<Transform> localTrack(const SkinningDecomposition::Helper& helper, int anchor,
-                                           const Affine& parent,
-                                           const std::vector<std::vector<Transform>>& motion) {
+  std::vector<Transform> localTrack(std::size_t h, std::span<const Transform> track,
+                                    const BoneFrames& bones) const {
+    const Affine& parent = nodes_[h].parent;
     const Affine back = parent.inverse();
-    std::vector<Transform> track;
-    for (std::size_t f = 0; f < motion.size(); ++f) {
+    std::vector<Transform> out;
+    for (std::size_t f = 0; f < track.size(); ++f) {
       const Transform relative =
-          anchor < 0 ? helper.world[f] : motion[f][at(anchor)].inverse() * helper.world[f];
-      track.push_back({back.linear() * relative.rotation * parent.linear(),
-                       back * relative.point(helper.center_m)});
+          nodes_[h].anchor < 0 ? track[f] : bones[f][at(nodes_[h].anchor)].inverse() * track[f];
+      out.push_back({back.linear() * relative.rotation * parent.linear(),
+                     back * relative.point(found_.helpers[h].center_m)});
     }
-    return track;
+    return out;
   }
 
   // Joints of the rig that the file has no node for.
@@ -248,26 +321,50 @@ class BoneWriter {
   RigSource& source_;
   const RiggedModel& model_;
   const SkinningDecomposition& found_;
-  std::vector<Bone> bones_;  // the rig's joints, then helpers
-  std::set<int> soft_;       // nodes that got a skin
+  std::vector<Bone> bones_;        // the rig's joints, then helpers
+  std::vector<HelperNode> nodes_;  // of the helpers
+  std::set<int> soft_;             // nodes that got a skin
   std::set<std::string> names_;
   int lastName_ = 0;
 };
 
+// All clips' frames as one motion.
+SkinningDecomposition decompose(std::span<const RigClip> clips,
+                                const std::vector<OtherMotion>& others,
+                                DecompositionOptions options) {
+  const RiggedModel& model = clips.front().model;
+  BoneFrames bones;
+  PointFrames frames;
+  for (const RigClip& clip : clips) {
+    for (std::vector<Transform>& pose : boneFrames(clip)) bones.push_back(std::move(pose));
+    for (std::vector<Eigen::Vector3f>& frame : pointFrames(clip)) {
+      frames.push_back(std::move(frame));
+    }
+    options.motionFrames.push_back(clip.recording.frames.size());
+  }
+  options.kept = posesOfOthers(model, others, kKeptPoses);
+  return decomposeSkinning(model.points_m, model.triangles, model.weights, bones, frames, options);
+}
+
 }  // namespace
 
-RigBakeReport writeRigAsBones(const RigClip& clip, const DecompositionOptions& options,
+RigBakeReport writeRigAsBones(std::span<const RigClip> clips, const DecompositionOptions& options,
                               const std::string& path) {
-  RigSource source = RigSource::open(clip);
-  const RiggedModel& model = clip.model;
-  const SkinningDecomposition found = decomposeSkinning(
-      model.points_m, model.triangles, model.weights, boneFrames(clip), pointFrames(clip), options);
-  const BakedAnimation animation = BoneWriter(source, found).write();
+  RigSource source = RigSource::open(clips);
+  const std::vector<OtherMotion> others = otherMotions(source);
+  const SkinningDecomposition found = decompose(clips, others, options);
+  BoneWriter writer(source, found);
+  const std::vector<PlayedClip> played = writer.write();
+  if (!found.plain) {
+    for (const OtherMotion& other : others) writer.follow(other);
+  }
   source.document.writeGlb(path);
   RigBakeReport report;
-  report.error = playedError(clip, path, animation.index, animation.start_s, 0);
+  report.plain = found.plain;
   report.added = found.helpers.size();
   report.files = {path};
+  measurePlayed(path, played, 0, report);
+  report.others = measureOthers(source, path, others, 0);
   return report;
 }
 

@@ -236,7 +236,7 @@ std::vector<std::string> filesOfRigCache(const RiggedModel& model, const std::st
 }
 
 RigBakeReport writeRigAsCache(const RigClip& clip, const std::string& path) {
-  RigSource source = RigSource::open(clip);
+  RigSource source = RigSource::open(std::span<const RigClip>(&clip, 1));
   const std::vector<CachedMesh> meshes = meshesOf(clip.model);
   RigBakeReport report;
   report.files = filesOfRigCache(clip.model, path);

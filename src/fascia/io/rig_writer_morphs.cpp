@@ -3,6 +3,7 @@
 
 #include <fascia/io/rig_writer_geometry.h>
 #include <fascia/io/rig_writer_motion.h>
+#include <fascia/io/rig_writer_others.h>
 #include <fascia/io/rig_writer_player.h>
 
 namespace fascia {
@@ -65,11 +66,17 @@ class MorphWriter {
   MorphWriter(RigSource& source, const MorphBasis& basis)
       : source_(source), model_(source.clip.model), basis_(basis) {}
 
-  BakedAnimation write() {
+  std::vector<PlayedClip> write() {
     source_.separateMeshes();
-    const RigPlayer before(source_.document, model_.parts,
-                           animationNamed(source_, source_.clip.motion), source_.clip.scale, 0);
-    const BakedAnimation animation = prepareAnimation(source_);
+    std::vector<RigPlayer> before;  // the file's own targets keep what animations did with them
+    for (const RigClip& clip : source_.clips) {
+      before.emplace_back(source_.document, model_.parts, animationNamed(source_, clip.motion),
+                          clip.scale, 0);
+    }
+    std::vector<BakedAnimation> animations;
+    for (const RigClip& clip : source_.clips) {
+      animations.push_back(prepareAnimation(source_, clip));
+    }
     // A mesh's weights are its node's: told by its first part.
     std::map<int, std::size_t> firstPart;
     for (std::size_t p = 0; p < model_.parts.size(); ++p) {
@@ -79,14 +86,25 @@ class MorphWriter {
     for (const auto& [node, part] : firstPart) {
       oldTargets[node] = listSize(findMember(source_.primitive(model_.parts[part]), "targets"));
     }
-    weldWeights();
-    addTargets();
+    if (!basis_.targets.empty()) {
+      weldWeights();
+      addTargets();
+    }
     for (const auto& [node, part] : firstPart) {
+      if (basis_.targets.empty()) break;
       nameTargets(node, oldTargets[node]);
       widenAnimations(node, oldTargets[node]);
-      addWeightChannel(animation, node, part, before);
+      std::size_t first = 0;
+      for (std::size_t c = 0; c < animations.size(); ++c) {
+        addWeightChannel(source_.clips[c], animations[c], node, OldWeights{before[c], part, first});
+        first += source_.clips[c].recording.frames.size();
+      }
     }
-    return animation;
+    std::vector<PlayedClip> played;
+    for (std::size_t c = 0; c < animations.size(); ++c) {
+      played.push_back({source_.clips[c], animations[c].index, animations[c].start_s});
+    }
+    return played;
   }
 
  private:
@@ -214,10 +232,14 @@ class MorphWriter {
     return true;
   }
 
-  // The file's own targets keep what the animation did with them.
-  void addWeightChannel(const BakedAnimation& animation, int node, std::size_t part,
-                        const RigPlayer& before) {
-    if (basis_.targets.empty()) return;
+  // What a part's targets did in a motion, and where its frames begin in the basis' weights.
+  struct OldWeights {
+    const RigPlayer& player;
+    std::size_t part, firstFrame;
+  };
+
+  void addWeightChannel(const RigClip& clip, const BakedAnimation& animation, int node,
+                        const OldWeights& old) {
     Json::List& channels =
         ensureList(source_.item("animations", animation.index), "channels").list();
     std::erase_if(channels, [&](const Json& channel) {
@@ -226,13 +248,14 @@ class MorphWriter {
              static_cast<int>(target->find("node")->number()) == node;
     });
     std::vector<float> values;
-    const auto& frames = source_.clip.recording.frames;
+    const auto& frames = clip.recording.frames;
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const double time = animation.start_s + frames[f].time_s - frames.front().time_s;
-      for (const double w : before.morphWeights(part, time)) {
+      for (const double w : old.player.morphWeights(old.part, time)) {
         values.push_back(static_cast<float>(w));
       }
-      values.insert(values.end(), basis_.weights[f].begin(), basis_.weights[f].end());
+      const std::vector<float>& fresh = basis_.weights[old.firstFrame + f];
+      values.insert(values.end(), fresh.begin(), fresh.end());
     }
     addChannel(source_, animation, node, "weights", values, "SCALAR");
   }
@@ -247,18 +270,28 @@ class MorphWriter {
 
 }  // namespace
 
-RigBakeReport writeRigAsMorphs(const RigClip& clip, const MorphOptions& options,
+RigBakeReport writeRigAsMorphs(std::span<const RigClip> clips, const MorphOptions& options,
                                const std::string& path) {
-  RigSource source = RigSource::open(clip);
-  const RiggedModel& model = clip.model;
-  const MorphBasis basis =
-      findMorphBasis(model.points_m, model.weights, boneFrames(clip), pointFrames(clip), options);
-  const BakedAnimation animation = MorphWriter(source, basis).write();
+  RigSource source = RigSource::open(clips);
+  const RiggedModel& model = source.clip.model;
+  const std::vector<OtherMotion> others = otherMotions(source);
+  BoneFrames bones;
+  PointFrames frames;
+  for (const RigClip& clip : clips) {
+    for (std::vector<Transform>& pose : boneFrames(clip)) bones.push_back(std::move(pose));
+    for (std::vector<Eigen::Vector3f>& frame : pointFrames(clip)) {
+      frames.push_back(std::move(frame));
+    }
+  }
+  const MorphBasis basis = findMorphBasis(model.points_m, model.weights, bones, frames, options);
+  const std::vector<PlayedClip> played = MorphWriter(source, basis).write();
   source.document.writeGlb(path);
   RigBakeReport report;
-  report.error = playedError(clip, path, animation.index, animation.start_s, basis.targets.size());
   report.added = basis.targets.size();
+  report.plain = basis.targets.empty();
   report.files = {path};
+  measurePlayed(path, played, basis.targets.size(), report);
+  report.others = measureOthers(source, path, others, basis.targets.size());
   return report;
 }
 

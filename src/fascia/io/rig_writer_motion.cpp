@@ -114,9 +114,9 @@ void splitMatrix(RigSource& source, int n, const Vec3& scale) {
   putMember(json, "scale", numbers({scale.x(), scale.y(), scale.z()}));
 }
 
-void addJointChannels(RigSource& source, const BakedAnimation& animation) {
-  const std::vector<std::vector<Transform>> motion = boneFrames(source.clip);
-  std::vector<std::vector<Transform>> keys(source.clip.model.joints.size());
+void addJointChannels(RigSource& source, const RigClip& clip, const BakedAnimation& animation) {
+  const BoneFrames motion = boneFrames(clip);
+  std::vector<std::vector<Transform>> keys(clip.model.joints.size());
   JointKeys frames(source);
   for (const std::vector<Transform>& pose : motion) {
     frames.pose(pose);
@@ -153,25 +153,25 @@ int animationNamed(const RigSource& source, const std::string& name) {
   return -1;
 }
 
-BakedAnimation prepareAnimation(RigSource& source) {
+BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip) {
   BakedAnimation out;
-  out.index = animationNamed(source, source.clip.motion);
+  out.index = animationNamed(source, clip.motion);
   if (out.index >= 0) {
     std::vector<std::string> notes;
     const GltfClip old = readGltfClips(source.document, source.scene, notes)[at(out.index)];
-    out.keepsJoints = isWhole(source.clip, old) && movedAsTheFile(source.clip);
+    out.keepsJoints = isWhole(clip, old) && movedAsTheFile(clip);
     if (out.keepsJoints) out.start_s = static_cast<float>(old.start_s());
   }
-  out.times = source.document.addFloats(frameTimes(source.clip, out.start_s), "SCALAR", true);
+  out.times = source.document.addFloats(frameTimes(clip, out.start_s), "SCALAR", true);
   if (out.keepsJoints) return out;
   if (out.index < 0) {
     Json fresh{Json::Object{}};
-    fresh.set("name", source.clip.motion.empty() ? "fascia" : source.clip.motion);
+    fresh.set("name", clip.motion.empty() ? "fascia" : clip.motion);
     out.index = source.add("animations", std::move(fresh));
   }
   putMember(source.item("animations", out.index), "samplers", Json::List{});
   putMember(source.item("animations", out.index), "channels", Json::List{});
-  addJointChannels(source, out);
+  addJointChannels(source, clip, out);
   return out;
 }
 

@@ -177,28 +177,59 @@ void RigPlayer::pose(double time_s, std::vector<Eigen::Vector3f>& vertices) cons
   }
 }
 
-BakeError playedError(const RigClip& clip, const std::string& path, int animation, double start_s,
-                      std::size_t ownTargets) {
-  const GltfDocument document = GltfDocument::read(path);
-  const RigPlayer player(document, clip.model.parts, animation, clip.scale, ownTargets);
-  const auto& frames = clip.recording.frames;
-  std::vector<double> sum(frames.size(), 0.0), largest(frames.size(), 0.0);
+namespace {
+
+// Per frame: sums and largest of squared distances, in m².
+struct FrameErrors {
+  double sum_m2 = 0, largest_m2 = 0;
+  double entries = 0;
+
+  void add(const FrameErrors& other) {
+    sum_m2 += other.sum_m2;
+    largest_m2 = std::max(largest_m2, other.largest_m2);
+    entries += other.entries;
+  }
+  BakeError error() const {
+    return {1e3 * std::sqrt(sum_m2 / std::max(entries, 1.0)), 1e3 * std::sqrt(largest_m2)};
+  }
+};
+
+FrameErrors errorsOf(const RigPlayer& player, double start_s,
+                     const std::vector<Recording::Frame>& frames) {
+  std::vector<FrameErrors> errors(frames.size());
   parallelFor(frames.size(), [&](std::size_t f) {
     std::vector<Eigen::Vector3f> vertices;
     player.pose(start_s + frames[f].time_s - frames.front().time_s, vertices);
+    errors[f].entries = static_cast<double>(vertices.size());
     for (std::size_t v = 0; v < vertices.size(); ++v) {
       const double e = (vertices[v] - frames[f].skin_m[v]).cast<double>().squaredNorm();
-      sum[f] += e;
-      largest[f] = std::max(largest[f], e);
+      errors[f].sum_m2 += e;
+      errors[f].largest_m2 = std::max(errors[f].largest_m2, e);
     }
   });
-  double total = 0, worst = 0;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    total += sum[f];
-    worst = std::max(worst, largest[f]);
+  FrameErrors all;
+  for (const FrameErrors& e : errors) all.add(e);
+  return all;
+}
+
+}  // namespace
+
+BakeError playedError(const RigPlayer& player, double start_s,
+                      const std::vector<Recording::Frame>& frames) {
+  return errorsOf(player, start_s, frames).error();
+}
+
+void measurePlayed(const std::string& path, std::span<const PlayedClip> played,
+                   std::size_t ownTargets, RigBakeReport& report) {
+  const GltfDocument document = GltfDocument::read(path);
+  FrameErrors all;
+  for (const PlayedClip& p : played) {
+    const RigPlayer player(document, p.clip.model.parts, p.animation, p.clip.scale, ownTargets);
+    const FrameErrors errors = errorsOf(player, p.start_s, p.clip.recording.frames);
+    report.baked.push_back({p.clip.motion, errors.error()});
+    all.add(errors);
   }
-  const auto entries = static_cast<double>(frames.size() * clip.model.vertices.size());
-  return {1e3 * std::sqrt(total / entries), 1e3 * std::sqrt(worst)};
+  report.error = all.error();
 }
 
 }  // namespace fascia

@@ -57,9 +57,19 @@ class RigPlayer {
   std::size_t ownTargets_;
 };
 
-// Reads a file that was written for a clip and compares every frame; start_s: the recording's first
-// frame on the animation's clock.
-BakeError playedError(const RigClip& clip, const std::string& path, int animation, double start_s,
-                      std::size_t ownTargets);
+// How far what a player shows is from recorded frames; start_s: the first one's, on its clock.
+BakeError playedError(const RigPlayer& player, double start_s,
+                      const std::vector<Recording::Frame>& frames);
+
+// An animation of a written file, and the clip that it should play.
+struct PlayedClip {
+  const RigClip& clip;
+  int animation = 0;
+  double start_s = 0;  // the recording's first frame on the animation's clock
+};
+
+// Reads a file that was written for clips and compares every frame: fills in `error` and `baked`.
+void measurePlayed(const std::string& path, std::span<const PlayedClip> played,
+                   std::size_t ownTargets, RigBakeReport& report);
 
 }  // namespace fascia

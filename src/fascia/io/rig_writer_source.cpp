@@ -1,8 +1,10 @@
 #include <fascia/io/rig_writer_source.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
+#include <fascia/base/suggest.h>
 #include <fascia/io/rig_to_gltf.h>
 #include <fascia/rig/blend_skinning.h>
 
@@ -118,9 +120,18 @@ PartPlace placeOf(const RigSource& source, const RigPart& part) {
 
 }  // namespace
 
-RigSource RigSource::open(const RigClip& clip) {
-  checkClip(clip);
-  RigSource source{clip, readAsGltf(clip.model.sourceFile), {}, {}, {}};
+RigSource RigSource::open(std::span<const RigClip> clips) {
+  assert(!clips.empty());
+  const RigClip& clip = clips.front();
+  for (const RigClip& c : clips) {
+    assert(&c.model == &clip.model && c.scale == clip.scale);
+    checkClip(c);
+    for (const RigClip& before : clips) {
+      if (&before == &c) break;
+      if (before.motion == c.motion) fail(c, "two motions to bake are named " + quoted(c.motion));
+    }
+  }
+  RigSource source{clips, clip, readAsGltf(clip.model.sourceFile), {}, {}, {}};
   RiggedModel scratch;  // what the importer says a second time is not needed
   source.scene = GltfScene::of(source.document, clip.scale, scratch.notes);
   source.rig = GltfRig::of(source.document, source.scene, scratch);
@@ -185,8 +196,8 @@ PointFrames pointFrames(const RigClip& clip) {
   return frames;
 }
 
-std::vector<std::vector<Transform>> boneFrames(const RigClip& clip) {
-  std::vector<std::vector<Transform>> frames(clip.joints_world.size());
+BoneFrames boneFrames(const RigClip& clip) {
+  BoneFrames frames(clip.joints_world.size());
   for (std::size_t f = 0; f < frames.size(); ++f) {
     restToFrame(clip.model, clip.joints_world[f], frames[f]);
   }

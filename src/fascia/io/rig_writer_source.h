@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,15 @@ struct PartPlace {
 
 // The file that a model came from, opened again for editing.
 struct RigSource {
-  const RigClip& clip;
+  std::span<const RigClip> clips;  // at least one; all of this file
+  const RigClip& clip;             // the first of them, for what they have in common
   GltfDocument document;
   GltfScene scene;  // as the file was; nodes that are added get later numbers
   GltfRig rig;
   std::vector<PartPlace> places;  // per part
 
   // Throws Error: the recording is not of this model, or the file is not the model's any more.
-  static RigSource open(const RigClip& clip);
+  static RigSource open(std::span<const RigClip> clips);
 
   Json& item(const char* list, int index);  // of the document: "nodes", 3
   Json& node(int index) { return item("nodes", index); }
@@ -45,6 +47,6 @@ struct RigSource {
 PointFrames pointFrames(const RigClip& clip);
 
 // Motion of every joint from the bind pose to every frame.
-std::vector<std::vector<Transform>> boneFrames(const RigClip& clip);
+BoneFrames boneFrames(const RigClip& clip);
 
 }  // namespace fascia

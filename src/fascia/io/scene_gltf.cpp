@@ -65,7 +65,7 @@ class SceneWriter {
     for (std::size_t b = 0; b < stage_.bodies().bodyCount(); ++b) addBody(BodyId(b));
     for (std::size_t i = 0; i < stage_.def().props.size(); ++i) addProp(i);
     for (std::size_t i = 0; i < recording_.characters.size(); ++i) addActor(i);
-    return finishGlb(stage_.def().name, "performance", roots_, std::move(animation_), glb_);
+    return finishGlb(stage_.def().name, roots_, {{"performance", std::move(animation_)}}, glb_);
   }
 
  private:

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include <fascia/rig/rigged_model.h>
+
+namespace fascia {
+
+// A motion that ends in the pose that it begins with, perhaps in another place: a walk.
+struct MotionCycle {
+  Vec3 travel_m = Vec3::Zero();  // of the whole figure, from the beginning to the end
+};
+
+// The cycle that one of the model's motions is; none: it ends in another pose. Joints that neither
+// carry skin nor lead to such may be anywhere.
+std::optional<MotionCycle> cycleOf(const RiggedModel& model, int motion);
+
+// The motion twice, the second time from where the first has got to.
+SampledMotion playedTwice(const RiggedModel& model, int motion, const MotionCycle& cycle);
+
+}  // namespace fascia
