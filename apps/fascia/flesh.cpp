@@ -12,6 +12,7 @@
 #include <fascia/io/gltf_document.h>
 #include <fascia/io/rig_import.h>
 #include <fascia/io/rig_to_gltf.h>
+#include <fascia/pose/softness.h>
 
 #include "commands.h"
 #include "console.h"
@@ -21,12 +22,13 @@
 namespace fascia {
 namespace {
 
-// Skin for an imported figure. Its joints already carry it well, so tissue holds it closely: it
-// gives and trembles, and the membrane evens out what joints fold, over a few hundredths of the
-// figure's size. The fat that the fit left can be pressed nearly flat before flesh shows through.
-SkinDef skinFor(const RiggedModel& model) {
+// Skin for an imported figure: its pose function. The material and tissue are what a simulated
+// membrane on top of it would want: held closely, and evening out what joints fold over a few
+// hundredths of the figure's size.
+SkinDef skinFor(const RiggedModel& model, const SkinPoseDef& dials) {
   const double size = model.size_m();
   SkinDef skin;
+  skin.pose = dials;
   skin.tissue.stiffness_N_per_m3 = 20000;
   skin.tissue.damping_Ns_per_m3 = 300;
   skin.tissue.carry = 0.75;
@@ -37,7 +39,6 @@ SkinDef skinFor(const RiggedModel& model) {
   skin.material.shear_N_per_m = 0.5 * stretch;
   skin.material.prestretch = 1;
   skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
-  skin.fat.compressible = 0.8;
   return skin;
 }
 
@@ -50,12 +51,14 @@ not, a copy NAME.rig.glb is put beside the character file.
 
 Examples:
   fascia flesh fox.glb -o fox.fascia.json
+  fascia flesh hero.glb --jiggle 0.2 --muscle 0.8 -o hero.fascia.json
   fascia flesh centimetres.glb --scale 0.01 -o small.fascia.json --fat 0.25)";
 
 struct FleshOptions {
   std::string input, output, report;
   double scale = 1;
   FitOptions fit;
+  SkinPoseDef dials;
   int threads = 0;
   bool force = false;
 };
@@ -163,6 +166,19 @@ Json reportJson(const RiggedModel& model, const FleshFit& fit) {
                       {"joints", std::move(joints)}};
 }
 
+// What follows a single joint stays as hard as its artist made it: say so, and how to have it else.
+void noteStiffPieces(const RiggedModel& model, std::vector<std::string>& notes) {
+  const std::vector<char> stiff =
+      stiffPieces({model.points_m, model.weights, model.triangles, model.joints});
+  const auto hard = static_cast<std::size_t>(std::count(stiff.begin(), stiff.end(), 1));
+  if (hard == 0) return;
+  notes.push_back(
+      fmt::format("{} of {} points belong to pieces that a single joint carries: they stay hard "
+                  "(\"parts\" with "
+                  "\"rigid\": false makes one soft)",
+                  hard, stiff.size()));
+}
+
 void flesh(const FleshOptions& options, const Console& console) {
   checkFolders({options.output, options.report});
   refuseToOverwrite(options.output, options.force);
@@ -170,7 +186,10 @@ void flesh(const FleshOptions& options, const Console& console) {
   refuseToOverwrite(rig.copy, options.force);
   const ThreadLimit threads(options.threads);
   const RiggedModel model = readRiggedModel(options.input, {options.scale});
-  FleshFit fit = fitFlesh(model, options.fit);
+  FitOptions fitting = options.fit;
+  fitting.muscle = options.dials.muscle;
+  FleshFit fit = fitFlesh(model, fitting);
+  noteStiffPieces(model, fit.notes);
   sayTable(fit, console);
   for (const auto& notes : {model.notes, fit.notes}) {
     for (const std::string& note : notes) console.say("note: " + note);
@@ -186,7 +205,7 @@ void flesh(const FleshOptions& options, const Console& console) {
   def.skeleton = std::move(fit.skeleton);
   def.flesh = std::move(fit.flesh);
   def.rig = rig.def;
-  def.skin = skinFor(model);
+  def.skin = skinFor(model, options.dials);
   writeCharacterFile(def, options.output);
   console.say("wrote " + options.output);
   console.say(
@@ -218,6 +237,16 @@ void addFlesh(CLI::App& program, Console& console) {
       ->type_name("SHARE")
       ->check(CLI::Range(0.01, 0.9))
       ->capture_default_str();
+  const auto dial = [&](const std::string& name, double& value, const std::string& help) {
+    command.add_option(name, value, help)
+        ->type_name("0…1")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+  };
+  dial("--jiggle", options->dials.jiggle, "Flesh that moves by itself: 0 none, 1 jelly");
+  dial("--muscle", options->dials.muscle, "Muscles that swell in a bend: 0 none, 1 bodybuilder");
+  dial("--volume", options->dials.volume, "Share of what a bend takes that comes out around it");
+  dial("--tightness", options->dials.tightness, "How far the skin evens out: 0 slack, 1 taut");
   command.add_option("--report", options->report, "Write the table to this JSON file")
       ->type_name("FILE");
   command
@@ -236,7 +265,7 @@ CharacterDef fleshedCharacter(std::shared_ptr<const RiggedModel> model) {
   def.name = model->name;
   def.skeleton = std::move(fit.skeleton);
   def.flesh = std::move(fit.flesh);
-  def.skin = skinFor(*model);
+  def.skin = skinFor(*model, {});
   def.rig = RigDef{.file = model->sourceFile, .model = std::move(model)};
   return def;
 }

@@ -67,7 +67,7 @@ std::vector<DriverDef> swelling(const NamedSolid& named, const std::string& join
     driver.joint = joint;
     driver.dof = Dof::rx;
     for (const double flexion : {-0.4, 0.0, 1.0, 1.6}) {  // right angles
-      const double length = 1 + named.stretchPerRightAngle * flexion;
+      const double length = std::max(0.3, 1 + named.stretchPerRightAngle * flexion);
       driver.points.push_back(
           {flexion * kPi / 2,
            named.solid.half_m[axis] * (axis == 2 ? length : 1 / std::sqrt(length))});
@@ -119,7 +119,11 @@ FleshFit fitFlesh(const RiggedModel& model, const FitOptions& options) {
   const std::vector<JointMeaning> meanings = guessMeanings(model.joints);
   std::vector<PartFit> fits(model.joints.size());
   parallelFor(fits.size(), [&](std::size_t j) {
-    if (!symmetry.mirrored(j)) fits[j] = fitPart(setting, frames, meanings[j], j);
+    if (symmetry.mirrored(j)) return;
+    fits[j] = fitPart(setting, frames, meanings[j], j);
+    // As much as the skin's muscles do: the picture of the anatomy agrees with it.
+    for (NamedSolid& solid : fits[j].solids)
+      solid.stretchPerRightAngle *= options.muscle / FitOptions{}.muscle;
   });
   out.joints.resize(model.joints.size());
   const std::vector<std::size_t> points = dominatedPoints(model);

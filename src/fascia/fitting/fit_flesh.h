@@ -11,6 +11,7 @@ namespace fascia {
 
 struct FitOptions {
   double fat_share = 0.18;   // (0, 0.9]; thickness of fat over the local radius of the body
+  double muscle = 0.3;       // [0, 1]; how far muscles swell in a bend: 0.3 as muscles do
   double least_fat = 0.002;  // of the model's height: no solid comes nearer to the surface
 };
 

@@ -107,7 +107,8 @@ struct SurfaceVolume {
 SurfaceVolume surfaceVolume(TriangleList triangles, PointList points);
 
 // Share of a joint's volume that a pose loses: what the limb occupies less than at rest, over the
-// rest volume of the part of it that is near the joint. Negative: it gained.
+// rest volume of the part of it that is near the joint (at least a quarter of the ball with as much
+// surface, which says something of parts that hardly close, too). Negative: it gained.
 double jointVolumeLoss(TriangleList limb, TriangleList nearJoint, PointList rest, PointList points);
 
 // --- Motion against the skeleton (skin_motion.cpp)

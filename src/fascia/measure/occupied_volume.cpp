@@ -197,9 +197,25 @@ SurfaceVolume surfaceVolume(TriangleList triangles, PointList points) {
   return {countedVolume(surface), Columns(surface).repeatedVolume()};
 }
 
+namespace {
+
+// A patch that hardly closes, as the root of a leg on a flank, has next to no volume, and shares of
+// that mean nothing. No patch of this area holds more than a ball does: a quarter is the least.
+double leastVolume(TriangleList triangles, PointList points) {
+  double twiceArea = 0;
+  for (const auto& t : triangles)
+    twiceArea += static_cast<double>(
+        (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm());
+  const double radius = std::sqrt(0.5 * twiceArea / (4 * kPi));
+  return 0.25 * (4.0 / 3) * kPi * radius * radius * radius;
+}
+
+}  // namespace
+
 double jointVolumeLoss(TriangleList limb, TriangleList nearJoint, PointList rest,
                        PointList points) {
-  const double joint = surfaceVolume(nearJoint, rest).occupied_m3();
+  const double joint =
+      std::max(surfaceVolume(nearJoint, rest).occupied_m3(), leastVolume(nearJoint, rest));
   if (!(joint > 0)) return 0;
   const double before = surfaceVolume(limb, rest).occupied_m3();
   return (before - surfaceVolume(limb, points).occupied_m3()) / joint;

@@ -60,7 +60,7 @@ class LimbContact {
   struct Pair {
     std::uint32_t a, b;     // skin of a against the body of b
     std::int32_t mirror;    // the pair (b, a), or none
-    std::int32_t bending;   // the joint whose bend makes the crease; -1: limbs that share no joint
+    std::uint32_t bending;  // the joint whose bend makes the crease
     std::uint32_t overlap;  // first of overlap_m_, one per skin point of a
   };
   struct Cluster {

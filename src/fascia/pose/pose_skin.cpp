@@ -32,10 +32,9 @@ void forChunks(std::size_t count, const Task& task) {
 
 PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
     : mesh_(makePoseMesh(source)), jointCount_(source.joints.size()) {
-  const std::size_t count = mesh_.size();
   parts_ = std::make_shared<const LimbParts>(makeLimbParts(source, mesh_));
   base_ = BasePose(source, mesh_);
-  const std::vector<char> rigid = dials.rigid.empty() ? stiffPieces(source, mesh_) : dials.rigid;
+  const std::vector<char> rigid = dials.rigid.empty() ? stiffPieces(source) : dials.rigid;
   contact_ = LimbContact(source, mesh_, parts_, rigid);
   elastic_ = ElasticLayer(source, mesh_, *parts_,
                           valuesOf(dials.tightness, rigid, PoseDials::kTightness), rigid);

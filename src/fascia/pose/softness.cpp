@@ -50,13 +50,14 @@ Firmness firmnessOf(const std::string& name, JointMeaning meaning) {
 
 }  // namespace
 
-std::vector<char> stiffPieces(const PoseSource& source, const PoseMesh& mesh) {
-  std::vector<char> stiff(mesh.size(), 0), seen(mesh.size(), 0);
-  std::vector<std::vector<std::uint32_t>> around(mesh.size());
-  for (const auto& t : mesh.triangles)
+std::vector<char> stiffPieces(const PoseSource& source) {
+  const std::size_t count = source.points.size();
+  std::vector<char> stiff(count, 0), seen(count, 0);
+  std::vector<std::vector<std::uint32_t>> around(count);
+  for (const auto& t : source.triangles)
     for (std::size_t k = 0; k < 3; ++k) around[t[k]].push_back(t[(k + 1) % 3]);
   std::vector<std::uint32_t> piece;
-  for (std::uint32_t first = 0; first < mesh.size(); ++first) {
+  for (std::uint32_t first = 0; first < count; ++first) {
     if (seen[first]) continue;
     piece.assign(1, first);
     seen[first] = 1;
@@ -96,7 +97,7 @@ std::vector<float> softnessOf(const PoseSource& source, const PoseMesh& mesh,
     }
   }
   smoothAlongEdges(mesh, kBlendPasses, soft);
-  const std::vector<char> stiff = stiffPieces(source, mesh);
+  const std::vector<char> stiff = stiffPieces(source);
   for (std::size_t i = 0; i < mesh.size(); ++i)
     if (stiff[i]) soft[i] = 0;
   return soft;

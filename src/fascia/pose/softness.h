@@ -13,6 +13,6 @@ std::vector<float> softnessOf(const PoseSource& source, const PoseMesh& mesh,
                               const LimbParts& parts);
 
 // Points of pieces that a single joint carries: they stay exactly as they are.
-std::vector<char> stiffPieces(const PoseSource& source, const PoseMesh& mesh);
+std::vector<char> stiffPieces(const PoseSource& source);
 
 }  // namespace fascia

@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 
+#include <fascia/pose/softness.h>
 #include <fascia/skin/grid_skin_builder.h>
 #include <fascia/skin/mesh_topology.h>
 #include <fascia/skin/rigged_skin.h>
@@ -136,7 +137,8 @@ void MeshSkinBuilder::findFelt() {
 // what rules make rigid.
 void MeshSkinBuilder::chooseFixed() {
   fixed_.assign(rig_.points_m.size(), 0);
-  rigid_.assign(rig_.points_m.size(), 0);
+  // Pieces that one joint carries (armour, eyes, a robot) stay hard unless a rule says otherwise.
+  rigid_ = stiffPieces({rig_.points_m, rig_.weights, rig_.triangles, rig_.joints});
   if (def_.pose.simulate) fixLoosePieces();
   for (const SkinPartDef& rule : def_.parts)
     for (const RigPart& part : rig_.parts) {

@@ -132,7 +132,9 @@ struct SkinContactDef {
 // What becomes of a piece of an imported mesh, named by its part or material.
 struct SkinPartDef {
   std::string name;
-  bool rigid = true;  // carried by its joints as it is: armour, buckles, a robot
+  // Carried by its joints as it is: armour, buckles, a robot. Pieces that a single joint carries
+  // are, unless a rule with false makes them skin.
+  bool rigid = true;
 };
 
 struct SkinDef {

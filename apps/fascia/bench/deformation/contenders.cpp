@@ -60,7 +60,7 @@ class BlendContender : public Contender {
 };
 
 // How much a Fascia that may jiggle may tremble beside linear blending.
-constexpr double kJitterOfJiggle = 2.5;
+constexpr double kJitterOfJiggle = 2.5, kJitterOfStill = 1.3;
 
 // The surface that a character shows, vertex by vertex.
 void showCharacter(const Character& character, const CharacterState& state, TriangleMesh& surface) {
@@ -151,6 +151,10 @@ std::vector<std::unique_ptr<Contender>> makeContenders(std::shared_ptr<const Rig
   all.push_back(std::make_unique<BlendContender>(std::make_unique<DeltaMush>(*model)));
   if (character == nullptr) return all;
   all.push_back(std::make_unique<FasciaContender>("fascia", model, *character, kJitterOfJiggle));
+  BuildOptions still;
+  still.jiggle = 0;
+  all.push_back(
+      std::make_unique<FasciaContender>("fascia, still", model, *character, kJitterOfStill, still));
   return all;
 }
 
