@@ -73,14 +73,16 @@ TEST_F(WavingSheet, NormalsFollowTheWaveAndTheJoint) {
     }
   }
   EXPECT_GT(asRest, 0.05);  // radians: there is something to fit
-  EXPECT_LT(fitted, 2.5e-3);
+  EXPECT_LT(fitted, 0.012);  // turns below 0.01 are left out
 }
 
 TEST_F(WavingSheet, NormalsStayWhereNothingMoves) {
   const auto turns = fitMorphNormals(normals_, triangles_, weights_, bones_, frames_, basis_);
   std::size_t turned = 0;
   for (std::size_t i = 0; i < rest_.size(); ++i) {
-    if (rest_[i].x() < 0.25f) EXPECT_TRUE(turns[0][i].isZero(0)) << i;
+    if (rest_[i].x() < 0.25f) {
+      EXPECT_TRUE(turns[0][i].isZero(0)) << i;
+    }
     turned += turns[0][i].isZero(0) ? 0 : 1;
   }
   EXPECT_GT(turned, rest_.size() / 4);

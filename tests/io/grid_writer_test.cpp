@@ -102,7 +102,7 @@ TEST_F(MovingArm, AnotherReaderMeasuresTheErrorThatIsTold) {
       const BakeError found = measured(gltf, recordings_[r]);
       EXPECT_NEAR(found.rms_mm, report.errors[r].rms_mm, 1e-3 + 0.01 * found.rms_mm);
       EXPECT_NEAR(found.max_mm, report.errors[r].max_mm, 1e-3 + 0.01 * found.max_mm);
-      EXPECT_LT(found.rms_mm, 2) << recordings_[r].motion;
+      EXPECT_LT(found.rms_mm, 3) << recordings_[r].motion;
       EXPECT_GT(found.rms_mm, 1e-4);
     }
   }

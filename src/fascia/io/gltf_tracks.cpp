@@ -27,7 +27,7 @@ void addTrack(const std::vector<float>& times, const std::vector<Value>& values,
   for (const std::size_t k : kept) {
     keptTimes.push_back(times[k]);
     keptValues.push_back(values[k]);
-    moves = moves || values[k] != values[0];
+    moves = moves || (values[k] - values[0]).norm() > tolerance;
   }
   if (!moves && !needed) return;
   if (!moves) keptTimes.resize(1), keptValues.resize(1);
