@@ -14,6 +14,8 @@ namespace {
 
 // Helpers that come by themselves stop here: more are no bother for a player, but for people.
 constexpr int kMostHelpers = 128;
+// They are looked for in some of the frames: what all frames together have more.
+constexpr double kMargin = 0.96;
 // Other motions that change by more than this share of the height are told one by one, in percent.
 constexpr double kMostChange_percent = 2;
 
@@ -40,9 +42,12 @@ std::string added(const RigBakeReport& report, const RigBakeOptions& options) {
 }
 
 // Whether the helpers did what was asked.
-void sayHelpers(const RigBakeReport& report, const RigBakeOptions& options, double rms_percent,
+void sayHelpers(const RigBakeReport& report, const RigBakeOptions& options, const RiggedModel& rig,
                 const Console& console) {
   if (report.plain || options.tolerance_percent <= 0) return;
+  double rms_percent = 0;  // of the motion that has the largest
+  for (const RigBakeReport::Motion& m : report.baked)
+    rms_percent = std::max(rms_percent, percentOf(m.error.rms_mm, rig));
   const auto asked = static_cast<std::size_t>(options.helpers);
   const bool reached = rms_percent <= options.tolerance_percent;
   if (reached && report.added > asked)
@@ -154,7 +159,7 @@ RigBakeReport writeRigBake(const CharacterDef& def, std::span<const Shot> shots,
   DecompositionOptions fit;
   fit.helperBones = options.helpers;
   fit.influences = options.influences;
-  fit.tolerance_m = 0.01 * options.tolerance_percent * rig.model->height_m();
+  fit.tolerance_m = kMargin * 0.01 * options.tolerance_percent * rig.model->height_m();
   fit.mostHelpers = std::max(options.helpers, kMostHelpers);
   fit.progress = [&](double share) {
     if (!progress.update(share)) throw Interrupted{};
@@ -174,8 +179,7 @@ Json describe(const RigBakeReport& report, const RigBakeOptions& options, const 
     for (const RigBakeReport::Motion& m : report.baked)
       console.say(fmt::format("  {}: {:.2g} % RMS, {:.2g} % at most", m.name,
                               percentOf(m.error.rms_mm, rig), percentOf(m.error.max_mm, rig)));
-  if (options.as.empty() || options.as == "bones")
-    sayHelpers(report, options, percentOf(error.rms_mm, rig), console);
+  if (options.as.empty() || options.as == "bones") sayHelpers(report, options, rig, console);
   if (options.as != "cache") sayOthers(report, rig, console);
   return Json::Object{{"file", path},
                       {"added", static_cast<int>(report.added)},

@@ -134,6 +134,16 @@ std::vector<std::vector<Transform>> jointFrames(const Character& character,
   return frames;
 }
 
+// Near to the wanted rate, but the beginning and the end of the cycle, and of the motion, fall on
+// frames: or the last would not be the first.
+double rateFor(const Cast& cast, const Take& take, double wanted_hz) {
+  const double period_s = take.cycle->period_s;
+  const double duration_s = cast.character.motion(static_cast<std::size_t>(take.index)).duration_s;
+  const double missing_s = period_s - duration_s;  // a frame of the motion, or nothing
+  if (missing_s > 1e-6) return std::max(1.0, std::round(wanted_hz * missing_s)) / missing_s;
+  return std::max(1.0, std::round(period_s * wanted_hz)) / period_s;
+}
+
 // The second time of a motion, as if it were the first, with ends that meet.
 void closeEnds(const Cast& cast, const Take& take, Shot& shot) {
   const Character& character = cast.character;
@@ -230,13 +240,11 @@ Shot shoot(const Cast& cast, const Take& take, const SimulationOptions& options,
     shot.joints_world = jointFrames(cast.character, shot.recording);
     return shot;
   }
-  // A whole number of frames, or the last would not be the first.
-  const double duration_s = cast.character.motion(static_cast<std::size_t>(take.index)).duration_s;
   const double rate_hz =
       record.frame_rate_hz > 0 ? record.frame_rate_hz : cast.def.simulation.frame_rate_hz;
-  record.frame_rate_hz = std::max(1.0, std::round(duration_s * rate_hz)) / duration_s;
-  record.duration_s = 2 * duration_s;
-  record.start_s = duration_s;
+  record.frame_rate_hz = rateFor(cast, take, rate_hz);
+  record.duration_s = 2 * take.cycle->period_s;
+  record.start_s = take.cycle->period_s;
   shot.recording = simulate(cast.character, record, console, what);
   closeEnds(cast, take, shot);
   return shot;

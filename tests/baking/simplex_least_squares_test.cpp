@@ -107,7 +107,9 @@ TEST(SimplexLeastSquares, MeetsTheConditionsOfAnOptimum) {
     const double multiplier = gradient.dot(w);
     for (Eigen::Index c = 0; c < 8; ++c) {
       EXPECT_GT(gradient[c], multiplier - 1e-7);
-      if (w[c] > 1e-6) EXPECT_NEAR(gradient[c], multiplier, 1e-7);
+      if (w[c] > 1e-6) {
+        EXPECT_NEAR(gradient[c], multiplier, 1e-7);
+      }
     }
   }
 }

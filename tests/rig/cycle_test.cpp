@@ -65,13 +65,36 @@ TEST(MotionCycle, LoopsAreCyclesThatStay) {
   EXPECT_TRUE(cycle->travel_m.isZero(0));
 }
 
+// Without the doubled pose at its end, a cycle is a frame longer than the motion.
+TEST(MotionCycle, MayLackItsLastPose) {
+  RiggedModel model = walker({0, 0, 0}, 0);
+  SampledMotion& motion = model.motions[0];
+  motion.rotation.resize(motion.rotation.size() - 3);
+  motion.translation_m.resize(motion.translation_m.size() - 3);
+  const auto cycle = cycleOf(model, 0);
+  ASSERT_TRUE(cycle);
+  EXPECT_NEAR(cycle->period_s, 1, 1e-9);
+  EXPECT_NEAR(motion.duration_s(), 0.95, 1e-9);
+  const SampledMotion twice = playedTwice(model, 0, *cycle);
+  EXPECT_EQ(twice.frameCount(), 41u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(twice.translation_m[20 * 3 + i], twice.translation_m[i]);
+    EXPECT_EQ(twice.translation_m[40 * 3 + i], twice.translation_m[i]);
+  }
+  // Two frames short it does not close.
+  motion.rotation.resize(motion.rotation.size() - 6);
+  motion.translation_m.resize(motion.translation_m.size() - 6);
+  EXPECT_FALSE(cycleOf(model, 0));
+}
+
 TEST(PlayedTwice, GoesOnFromWhereItHasGotTo) {
   const Vec3 travel(0.1, 0.02, 2);
   RiggedModel model = walker(travel, 0);
   const MotionCycle cycle = *cycleOf(model, 0);
   model.motions.push_back(playedTwice(model, 0, cycle));
   EXPECT_EQ(model.motions[1].frameCount(), 41u);
-  EXPECT_NEAR(model.motions[1].duration_s(), 2 * model.motions[0].duration_s(), 1e-12);
+  EXPECT_NEAR(cycle.period_s, model.motions[0].duration_s(), 1e-12);
+  EXPECT_NEAR(model.motions[1].duration_s(), 2 * cycle.period_s, 1e-12);
   std::vector<Transform> once, again;
   for (int f = 0; f <= 20; ++f) {
     poseRig(model, 0, f / 20.0, once);

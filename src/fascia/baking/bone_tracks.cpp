@@ -17,11 +17,11 @@ Vec3 blendPoint(const Vec3& rest, const PointWeights& weights, const BoneTracks&
 }
 
 void squaredErrors(const SkinningProblem& problem, std::span<const PointWeights> weights,
-                   const BoneTracks& bones, std::size_t frames, std::vector<double>& error) {
+                   const BoneTracks& bones, FrameRange frames, std::vector<double>& error) {
   error.resize(problem.pointCount());
   parallelFor(problem.pointCount(), [&](std::size_t i) {
     double sum = 0;
-    for (std::size_t f = 0; f < frames; ++f) {
+    for (std::size_t f = frames.first; f < frames.end; ++f) {
       sum += (blendPoint(problem.rest_m[i], weights[i], bones, f) -
               problem.target(i, f).cast<double>())
                  .squaredNorm();

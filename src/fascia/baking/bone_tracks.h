@@ -48,9 +48,14 @@ struct SkinningProblem {
 Vec3 blendPoint(const Vec3& rest, const PointWeights& weights, const BoneTracks& bones,
                 std::size_t frame);
 
-// Per point: sum over the first `frames` frames of the squared distance to its target.
+// A run of frames.
+struct FrameRange {
+  std::size_t first = 0, end = 0;
+};
+
+// Per point: sum over these frames of the squared distance to its target.
 void squaredErrors(const SkinningProblem& problem, std::span<const PointWeights> weights,
-                   const BoneTracks& bones, std::size_t frames, std::vector<double>& error);
+                   const BoneTracks& bones, FrameRange frames, std::vector<double>& error);
 
 // Over all points and frames.
 double largestError(const SkinningProblem& problem, std::span<const PointWeights> weights,

@@ -34,11 +34,11 @@ double roundOf(int helpers) {
 
 }  // namespace
 
-HelperSearch::HelperSearch(const SkinningProblem& problem, std::size_t countedFrames,
+HelperSearch::HelperSearch(const SkinningProblem& problem, std::vector<FrameRange> motions,
                            const PointGraph& graph, std::span<const PointWeights> rigWeights,
                            BoneTracks bones, const DecompositionOptions& options)
     : problem_(problem),
-      countedFrames_(countedFrames),
+      motions_(std::move(motions)),
       graph_(graph),
       rig_(rigWeights),
       rigBoneCount_(bones.boneCount()),
@@ -136,13 +136,18 @@ void HelperSearch::round() {
 }
 
 double HelperSearch::rms_m() {
-  squaredErrors(problem_, weights_, bones_, countedFrames_, error_m2_);
-  const double sum = std::accumulate(error_m2_.begin(), error_m2_.end(), 0.0);
-  return std::sqrt(sum / static_cast<double>(error_m2_.size() * countedFrames_));
+  double largest = 0;
+  for (const FrameRange& motion : motions_) {
+    squaredErrors(problem_, weights_, bones_, motion, error_m2_);
+    const double sum = std::accumulate(error_m2_.begin(), error_m2_.end(), 0.0);
+    const auto frames = static_cast<double>(motion.end - motion.first);
+    largest = std::max(largest, sum / (static_cast<double>(error_m2_.size()) * frames));
+  }
+  return std::sqrt(largest);
 }
 
 std::vector<HelperSeed> HelperSearch::seeds(std::size_t count) {
-  squaredErrors(problem_, weights_, bones_, problem_.frameCount, error_m2_);
+  squaredErrors(problem_, weights_, bones_, {0, problem_.frameCount}, error_m2_);
   const std::size_t patch =
       std::max<std::size_t>(12, problem_.pointCount() / (4 * (helpers_.size() + count)));
   return seedHelpers(problem_, graph_, rig_, bones_, error_m2_, patch, count, seeds_);

@@ -17,9 +17,9 @@ namespace fascia {
 // tolerance after that, more helpers come.
 class HelperSearch {
  public:
-  // Errors count in the first `countedFrames` frames of the problem.
-  HelperSearch(const SkinningProblem& problem, std::size_t countedFrames, const PointGraph& graph,
-               std::span<const PointWeights> rigWeights, BoneTracks bones,
+  // `motions`: the frames of the problem that are each one motion; errors count in these.
+  HelperSearch(const SkinningProblem& problem, std::vector<FrameRange> motions,
+               const PointGraph& graph, std::span<const PointWeights> rigWeights, BoneTracks bones,
                const DecompositionOptions& options);
 
   void run();
@@ -39,12 +39,12 @@ class HelperSearch {
   void place(std::size_t helper, const HelperSeed& seed);
   void updateReach();
   int nextCount() const;
-  double rms_m();
+  double rms_m();  // of the motion that has the largest
   static double workOf(int from, int to);
   double refiningOf(int helpers) const;
 
   const SkinningProblem& problem_;
-  std::size_t countedFrames_;
+  std::vector<FrameRange> motions_;
   const PointGraph& graph_;
   std::span<const PointWeights> rig_;
   std::size_t rigBoneCount_;

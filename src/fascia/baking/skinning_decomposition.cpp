@@ -25,22 +25,29 @@ constexpr int kLastSweeps = 6;
 // Of the model's size: a surface that stays this near to the rig's own skinning needs no helpers.
 constexpr double kPlain = 2e-5;
 
+struct FittedFrames {
+  std::vector<std::size_t> frames;  // increasing
+  std::vector<FrameRange> motions;  // which of them are each one motion
+};
+
 // Each motion gets its share, and both of its ends.
-std::vector<std::size_t> fittedFrames(std::size_t count, std::vector<std::size_t> motionFrames) {
+FittedFrames fittedFrames(std::size_t count, std::vector<std::size_t> motionFrames) {
   if (motionFrames.empty()) motionFrames.push_back(count);
   const std::size_t budget =
       std::min(kMostFramesOfAll, kMostFittedFrames + kMoreFrames * (motionFrames.size() - 1));
-  std::vector<std::size_t> frames;
+  FittedFrames out;
   std::size_t first = 0;
   for (const std::size_t length : motionFrames) {
+    const std::size_t before = out.frames.size();
     const std::size_t share =
         std::min(length, std::max<std::size_t>(2, budget * length / std::max(count, budget)));
     for (std::size_t k = 0; k < share; ++k) {
-      frames.push_back(first + (share < 2 ? 0 : k * (length - 1) / (share - 1)));
+      out.frames.push_back(first + (share < 2 ? 0 : k * (length - 1) / (share - 1)));
     }
+    if (share > 0) out.motions.push_back({before, out.frames.size()});
     first += length;
   }
-  return frames;
+  return out;
 }
 
 // Frames of a surface, and those in which it shall be kept, as one.
@@ -112,7 +119,7 @@ class HelperSpread {
       tracks[h].insert(tracks[h].end(), track.begin(), track.end());
     }
     std::vector<double> error_m2;
-    squaredErrors(problem, found_.weights, all, chosen.size(), error_m2);
+    squaredErrors(problem, found_.weights, all, {0, chosen.size()}, error_m2);
     sum_m2_ = std::accumulate(error_m2.begin(), error_m2.end(), sum_m2_);
     max_m_ = std::max(max_m_, largestError(problem, found_.weights, all));
   }
@@ -271,11 +278,12 @@ SkinningDecomposition decomposeSkinning(std::span<const Eigen::Vector3f> rest,
   SkinningDecomposition out;
   if (isPlain(rest, weights, bones, frames, out)) return out;
   const PointGraph graph(rest.size(), triangles);
-  const std::vector<std::size_t> chosen = fittedFrames(frames.size(), options.motionFrames);
+  const FittedFrames fitted = fittedFrames(frames.size(), options.motionFrames);
+  const std::vector<std::size_t>& chosen = fitted.frames;
   const SkinningProblem problem =
       problemOf(rest, frames, chosen, plainSkinning(rest, weights, options.kept));
-  HelperSearch search(problem, chosen.size(), graph, weights, tracksOf(bones, chosen, options.kept),
-                      options);
+  HelperSearch search(problem, fitted.motions, graph, weights,
+                      tracksOf(bones, chosen, options.kept), options);
   search.run();
   collect(rest, search, out);
   HelperSpread spread(rest, out, bones, frames);

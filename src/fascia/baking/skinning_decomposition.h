@@ -19,7 +19,8 @@ struct DecompositionOptions {
   int iterations = 12;   // of bones against weights
   // Told the share that is done, now and then; what it throws stops the work.
   std::function<void(double)> progress = {};
-  // As long as the RMS error is above, more helpers come, up to `mostHelpers` [0, 512]. 0: none do.
+  // As long as the RMS error of a motion is above, more helpers come, up to `mostHelpers` [0, 512].
+  // 0: none do.
   double tolerance_m = 0;
   int mostHelpers = 0;
   // How many of the frames belong to each motion, if there are several. Each is heard.

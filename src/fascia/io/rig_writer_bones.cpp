@@ -18,8 +18,8 @@ constexpr double kResting = 1e-5;
 constexpr double kRestingElsewhere = 5e-4, kFollowed = 1e-3;
 // Poses of other motions in which the weights shall play them too.
 constexpr std::size_t kKeptPoses = 45;
-// Helpers' keys in other motions: enough for what is left between two of them.
-constexpr double kOthersRate_hz = 20;
+// Helpers' keys in other motions are at most so dense; else they are where the joints' own are.
+constexpr double kOthersRate_hz = 30;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -79,11 +79,12 @@ class BoneWriter {
   // Lets helpers move in a motion that is not baked, so that the surface is as it was.
   void follow(const OtherMotion& other) {
     const double least_m = kFollowed * model_.size_m();
-    const auto count = static_cast<std::size_t>(std::ceil(other.duration_s * kOthersRate_hz)) + 1;
+    const double rate_hz = std::min(model_.motions[at(other.motion)].rate_hz, kOthersRate_hz);
+    const auto count = static_cast<std::size_t>(std::lround(other.duration_s * rate_hz)) + 1;
     const std::vector<double> times_s = other.times(count);
     const BoneFrames bones = other.bones(model_, times_s);
     const PointFrames targets = plainSkinning(model_.points_m, model_.weights, bones);
-    if (restingError_m(model_.points_m, found_, bones, targets) <= least_m) return;
+    if (onParents_ && restingError_m(model_.points_m, found_, bones, targets) <= least_m) return;
     const auto tracks = fitHelpers(model_.points_m, found_, bones, targets);
     std::vector<float> clock;
     for (const double t : times_s) clock.push_back(static_cast<float>(other.start_s + t));
@@ -180,6 +181,7 @@ class BoneWriter {
   void addHelper(const SkinningDecomposition::Helper& helper) {
     HelperNode out;
     out.anchor = anchorOf(helper.parent);
+    onParents_ = onParents_ && out.anchor == helper.parent;
     out.parent = out.anchor < 0 ? source_.unit() : source_.bindOfJoint(out.anchor);
     // The helper's frame at rest is its anchor's, moved to where it sits.
     Affine bind_world = out.parent;
@@ -323,6 +325,7 @@ class BoneWriter {
   const SkinningDecomposition& found_;
   std::vector<Bone> bones_;        // the rig's joints, then helpers
   std::vector<HelperNode> nodes_;  // of the helpers
+  bool onParents_ = true;          // every helper hangs below its own joint
   std::set<int> soft_;             // nodes that got a skin
   std::set<std::string> names_;
   int lastName_ = 0;

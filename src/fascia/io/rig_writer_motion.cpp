@@ -5,12 +5,16 @@
 #include <set>
 
 #include <fascia/io/rig_gltf_clip.h>
+#include <fascia/io/rig_writer_player.h>
 
 namespace fascia {
 namespace {
 
 // Of the model's size: joints that are off by less than this play the same motion.
 constexpr double kSameMotion = 2e-3;
+// The same for the file's keys as they play, and how far a joint may be turned (sine, about): more
+// would be the larger part of a bake's error.
+constexpr double kPlayedShift = 3e-4, kPlayedTurn = 2e-3;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -76,6 +80,8 @@ class JointKeys {
     }
   }
 
+  const Affine& world(int n) const { return world_[at(n)]; }
+
   // What is left when the node's own scale is taken out.
   Transform rigid(int n, const Vec3& scale, const Mat3& fallback) const {
     const Mat3 turn = local_[at(n)].linear() * scale.cwiseInverse().asDiagonal();
@@ -86,6 +92,29 @@ class JointKeys {
   const RigSource& source_;
   std::vector<Affine> world_, local_;
 };
+
+// Whether the file's own keys, played as players do, show the recorded joints: between keys that
+// lie far apart in a fast motion, straight lines leave the smooth way that was simulated.
+bool playsAsRecorded(const RigSource& source, const RigClip& clip, int animation, double start_s) {
+  const RigPlayer player(source.document, {}, animation, clip.scale, 0);
+  const double least_m = kPlayedShift * clip.model.size_m();
+  const BoneFrames motion = boneFrames(clip);
+  JointKeys recorded(source);
+  for (std::size_t f = 0; f < motion.size(); ++f) {
+    const auto& frames = clip.recording.frames;
+    const std::vector<Affine> played =
+        player.nodesAt(start_s + frames[f].time_s - frames.front().time_s);
+    recorded.pose(motion[f]);
+    for (const int n : source.rig.nodeOfJoint) {
+      if (n < 0) continue;
+      const Affine &is = played[at(n)], &wanted = recorded.world(n);
+      if ((is.translation() - wanted.translation()).norm() > least_m) return false;
+      if ((is.linear() - wanted.linear()).norm() > kPlayedTurn * wanted.linear().norm())
+        return false;
+    }
+  }
+  return true;
+}
 
 Vec3 scaleOf(const GltfNode& node) {
   Vec3 scale = node.hasMatrix ? Vec3(node.matrix.linear().colwise().norm()) : node.scale;
@@ -135,6 +164,21 @@ void addJointChannels(RigSource& source, const RigClip& clip, const BakedAnimati
   }
 }
 
+// What else the animation moves stays.
+void eraseJointChannels(const RigSource& source, Json& animation) {
+  std::erase_if(ensureList(animation, "channels").list(), [&](const Json& channel) {
+    const Json* target = channel.find("target");
+    const Json* node = target ? target->find("node") : nullptr;
+    const Json* path = target ? target->find("path") : nullptr;
+    if (!node || !path || !node->is(Json::Kind::number) || !path->is(Json::Kind::text))
+      return false;
+    const auto& joints = source.rig.nodeOfJoint;
+    return (path->text() == "rotation" || path->text() == "translation") &&
+           std::find(joints.begin(), joints.end(), static_cast<int>(node->number())) !=
+               joints.end();
+  });
+}
+
 }  // namespace
 
 int animationNamed(const RigSource& source, const std::string& name) {
@@ -156,11 +200,13 @@ int animationNamed(const RigSource& source, const std::string& name) {
 BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip) {
   BakedAnimation out;
   out.index = animationNamed(source, clip.motion);
+  bool whole = false;
   if (out.index >= 0) {
     std::vector<std::string> notes;
     const GltfClip old = readGltfClips(source.document, source.scene, notes)[at(out.index)];
-    out.keepsJoints = isWhole(clip, old) && movedAsTheFile(clip);
-    if (out.keepsJoints) out.start_s = static_cast<float>(old.start_s());
+    whole = isWhole(clip, old) && movedAsTheFile(clip);
+    if (whole) out.start_s = static_cast<float>(old.start_s());
+    out.keepsJoints = whole && playsAsRecorded(source, clip, out.index, out.start_s);
   }
   out.times = source.document.addFloats(frameTimes(clip, out.start_s), "SCALAR", true);
   if (out.keepsJoints) return out;
@@ -169,8 +215,13 @@ BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip) {
     fresh.set("name", clip.motion.empty() ? "fascia" : clip.motion);
     out.index = source.add("animations", std::move(fresh));
   }
-  putMember(source.item("animations", out.index), "samplers", Json::List{});
-  putMember(source.item("animations", out.index), "channels", Json::List{});
+  Json& animation = source.item("animations", out.index);
+  if (whole) {
+    eraseJointChannels(source, animation);
+  } else {
+    putMember(animation, "samplers", Json::List{});
+    putMember(animation, "channels", Json::List{});
+  }
   addJointChannels(source, clip, out);
   return out;
 }

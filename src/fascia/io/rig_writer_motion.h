@@ -16,8 +16,8 @@ struct BakedAnimation {
 };
 
 // Finds the file's animation of the clip's name and keeps its channels, if the recording is of all
-// of it and moved the joints as it does. Otherwise writes the joints' motion from the clip: into
-// that animation, or a new one.
+// of it and moved the joints as it does; where players would not show that, joints get keys of the
+// recording. Otherwise writes the joints' motion alone: into that animation, or a new one.
 BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip);
 
 // Linear keys at the recording's frames. type: "VEC3"; path: "translation", "rotation", "weights".

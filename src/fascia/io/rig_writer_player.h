@@ -20,6 +20,8 @@ class RigPlayer {
 
   // Vertices of all parts, one after the other, in metres. May be called from several threads.
   void pose(double time_s, std::vector<Eigen::Vector3f>& vertices) const;
+  // World frames of all nodes.
+  std::vector<Affine> nodesAt(double time_s) const;
   // Of all morph targets of a part.
   std::vector<double> morphWeights(std::size_t part, double time_s) const;
 
@@ -45,7 +47,6 @@ class RigPlayer {
   void readPart(const RigPart& part);
   void readSkins();
   void readWeightTracks(int animation);
-  std::vector<Affine> nodesAt(double time_s) const;
 
   const GltfDocument& document_;
   std::vector<std::string> notes_;
