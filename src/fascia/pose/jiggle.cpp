@@ -106,7 +106,7 @@ void Jiggle::step(double dt_s, std::span<const Vector4f> position, const Vec3& o
   const auto h = static_cast<float>(dt_s);
   const Vector4f moved = wide((origin_m - state.origin_m).cast<float>());
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    const Vector4f at = position[nodes_[k].point];
+    const Vector4f& at = position[nodes_[k].point];
     const Vector4f speed =
         state.frames > 0 ? Vector4f((at - state.place[k] + moved) / h) : Vector4f::Zero();
     const Vector4f acceleration =
