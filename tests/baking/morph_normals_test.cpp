@@ -72,7 +72,7 @@ TEST_F(WavingSheet, NormalsFollowTheWaveAndTheJoint) {
       asRest = std::max(asRest, (turned(normals_[i]) - truth[i].cast<double>()).norm());
     }
   }
-  EXPECT_GT(asRest, 0.05);  // radians: there is something to fit
+  EXPECT_GT(asRest, 0.05);   // radians: there is something to fit
   EXPECT_LT(fitted, 0.012);  // turns below 0.01 are left out
 }
 
