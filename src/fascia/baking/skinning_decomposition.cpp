@@ -21,7 +21,7 @@ constexpr std::size_t kMostFittedFrames = 90;
 constexpr std::size_t kMoreFrames = 8, kMostFramesOfAll = 240;
 // Frames whose helpers are fitted at once: bounds the memory that long motions take.
 constexpr std::size_t kFramesPerBlock = 128;
-constexpr int kLastSweeps = 6;
+constexpr int kLastSweeps = 6, kSweepsFromRest = 30;  // the latter have a longer way to go
 // Of the model's size: a surface that stays this near to the rig's own skinning needs no helpers.
 constexpr double kPlain = 2e-5;
 
@@ -113,7 +113,8 @@ class HelperSpread {
     BoneTracks all = tracksOf(bones_, chosen);
     const std::size_t rigBones = all.boneCount();
     for (std::size_t h = 0; h < tracks.size(); ++h) all.add(start(h, first, last));
-    fitHelperMotions(problem, found_.weights, rigBones, kLastSweeps, all);
+    fitHelperMotions(problem, found_.weights, rigBones,
+                     fitted_.empty() ? kSweepsFromRest : kLastSweeps, all);
     for (std::size_t h = 0; h < tracks.size(); ++h) {
       const std::span<const Transform> track = all.track(rigBones + h);
       tracks[h].insert(tracks[h].end(), track.begin(), track.end());
