@@ -49,7 +49,7 @@ class Comparison {
     findReach();
     choosePlaces();
     Shooting shooting(sides_, MainView(spec_, reach_, options_.turntable), places_, makeSheet(),
-                      {rigSurface(subject_.character, console_), reach_.box(), ground_m()});
+                      makeSetting());
     if (options_.film())
       shootFilm(shooting);
     else
@@ -151,10 +151,11 @@ class Comparison {
                  {{sides_.name(Side::plain), sides_.name(Side::ours)}, {}});
   }
 
-  double ground_m() const {
-    return floorHeight(
-        subject_.character,
-        motionReach(subject_.character, subject_.character.findMotion(subject_.recording.motion)));
+  Setting makeSetting() const {
+    const Character& character = subject_.character;
+    const std::string& motion = subject_.recording.motion;
+    const Reach reach = motionReach(character, motion.empty() ? -1 : character.findMotion(motion));
+    return {rigSurface(character, console_), reach.box(), floorHeight(character, reach)};
   }
 
   std::string title(std::size_t frame) const {

@@ -3,21 +3,20 @@
 namespace fascia {
 
 Shooting::Shooting(Sides& sides, MainView view, std::vector<Place> places, Sheet sheet,
-                   Surroundings3d around)
+                   Setting around)
     : sides_(sides),
       view_(std::move(view)),
       places_(std::move(places)),
       sheet_(std::move(sheet)),
       around_(std::move(around)) {}
 
-Scene Shooting::sceneOf(Side side, const Vec3& gone) const {
+Scene Shooting::sceneOf(Side side) const {
   SceneOptions options;
   options.rig_surface = around_.surface;
   Scene scene;
   addCharacter(sides_.character(), sides_.state(), sides_.surface(side), options,
-               around_.box.size().maxCoeff(), scene);
-  scene.drawables.push_back(
-      groundDisc({around_.box.low + gone, around_.box.high + gone}, around_.ground_m));
+               sides_.model().size_m(), scene);
+  scene.drawables.push_back(groundDisc(around_.reached, around_.ground_m));
   return scene;
 }
 
@@ -48,7 +47,7 @@ const Pixels& Shooting::draw(const Shot& shot, const Moment& moment, const std::
   for (const Side side : kSides) {
     const Cell& cell = side == Side::plain ? layout.mains.front() : layout.mains.back();
     const Camera camera = view_.camera(cell.aspect(), shot.turn, shot.gone);
-    Scene scene = sceneOf(side, shot.gone);
+    Scene scene = sceneOf(side);
     render(scene, camera, cell, mains_[side]);
     marks[side] = marksOn(camera, cell);
     for (std::size_t i = 0; i < places_.size(); ++i) {

@@ -9,9 +9,9 @@
 namespace fascia {
 
 // What the figures stand in.
-struct Surroundings3d {
+struct Setting {
   std::shared_ptr<const RigSurface> surface;
-  Box box;  // of the figure, over all that is shown, as seen from the moving camera
+  Box reached;  // by the plain rig in the course of its motion: the floor lies below
   double ground_m = 0;
 };
 
@@ -26,14 +26,13 @@ struct Shot {
 // Draws pictures of both sides.
 class Shooting {
  public:
-  Shooting(Sides& sides, MainView view, std::vector<Place> places, Sheet sheet,
-           Surroundings3d around);
+  Shooting(Sides& sides, MainView view, std::vector<Place> places, Sheet sheet, Setting around);
 
   // The moment is the shot's frame, measured. Valid until the next call.
   const Pixels& draw(const Shot& shot, const Moment& moment, const std::string& title);
 
  private:
-  Scene sceneOf(Side side, const Vec3& gone) const;
+  Scene sceneOf(Side side) const;
   void render(Scene& scene, const Camera& camera, const Cell& cell, Pixels& pixels);
   std::vector<Mark> marksOn(const Camera& camera, const Cell& cell) const;
 
@@ -41,7 +40,7 @@ class Shooting {
   MainView view_;
   std::vector<Place> places_;
   Sheet sheet_;
-  Surroundings3d around_;
+  Setting around_;
   Renderer renderer_;
   std::vector<Vec3> middles_;  // of the places, now
   Both<std::vector<Eigen::Vector3f>> points_;
