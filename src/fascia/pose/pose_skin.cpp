@@ -34,16 +34,16 @@ PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
     : mesh_(makePoseMesh(source)), jointCount_(source.joints.size()) {
   parts_ = std::make_shared<const LimbParts>(makeLimbParts(source, mesh_));
   base_ = BasePose(source, mesh_);
-  const std::vector<char> rigid = dials.rigid.empty() ? stiffPieces(source) : dials.rigid;
-  contact_ = LimbContact(source, mesh_, parts_, rigid);
+  rigid_ = dials.rigid.empty() ? stiffPieces(source) : dials.rigid;
+  contact_ = LimbContact(source, mesh_, parts_, rigid_);
   elastic_ = ElasticLayer(source, mesh_, *parts_,
-                          valuesOf(dials.tightness, rigid, PoseDials::kTightness), rigid);
+                          valuesOf(dials.tightness, rigid_, PoseDials::kTightness), rigid_);
   const SkinSpread spread(mesh_, *parts_);
   volume_ = JointVolume(source, mesh_, *parts_, spread,
-                        valuesOf(dials.volume, rigid, PoseDials::kVolume));
+                        valuesOf(dials.volume, rigid_, PoseDials::kVolume));
   muscles_ = MuscleSwell(source, mesh_, *parts_, spread,
-                         valuesOf(dials.muscle, rigid, PoseDials::kMuscle));
-  jiggle_ = Jiggle(source, mesh_, *parts_, valuesOf(dials.jiggle, rigid, PoseDials::kJiggle));
+                         valuesOf(dials.muscle, rigid_, PoseDials::kMuscle));
+  jiggle_ = Jiggle(source, mesh_, *parts_, valuesOf(dials.jiggle, rigid_, PoseDials::kJiggle));
 }
 
 // Joints relative to an origin that goes with the root: floats stay exact far away from the
@@ -65,7 +65,7 @@ void PoseSkin::displaceFlesh(Scratch& scratch) const {
     for (std::size_t i = begin; i < end; ++i) {
       // Where limbs already press on each other flesh has nowhere to go.
       const float along = scratch.along[i] * LimbContact::freedom(scratch.contact, i);
-      if (std::abs(along) < 1e-8f) continue;
+      if (rigid_[i] || std::abs(along) < 1e-8f) continue;
       const float most = kMostAlong * parts_->radius_m[i];
       const float out = most * std::tanh(along / most);
       scratch.position[i] += out * (scratch.rotation[i] * wide(mesh_.normal[i]));

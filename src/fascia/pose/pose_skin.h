@@ -80,6 +80,7 @@ class PoseSkin {
   PoseMesh mesh_;
   std::shared_ptr<const LimbParts> parts_;
   std::size_t jointCount_ = 0;
+  std::vector<char> rigid_;  // per point
   BasePose base_;
   LimbContact contact_;
   ElasticLayer elastic_;

@@ -43,9 +43,13 @@ void Skin::placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray
     return;
   }
   placeRigged(pose, scratch);
-  for (const auto axis : kAxes)
-    for (std::size_t k = 0; k < pointCount(); ++k)
-      (out.*axis)[k] = (scratch.points.*axis)[k] - (sag_.*axis)[k];
+  // A strand's inner end lies above its point in the rest posture, and turns with the limb.
+  for (std::size_t k = 0; k < pointCount(); ++k) {
+    const Vector4f sag = scratch.pose.rotation[k] * Vector4f(sag_.x[k], sag_.y[k], sag_.z[k], 0);
+    out.x[k] = scratch.points.x[k] - sag.x();
+    out.y[k] = scratch.points.y[k] - sag.y();
+    out.z[k] = scratch.points.z[k] - sag.z();
+  }
 }
 
 void Skin::placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {

@@ -169,7 +169,7 @@ HWY_INLINE void addLanes(const V<kRows>* v, float* sums) {
 }
 #else
 template <class DN>
-HWY_INLINE hn::Vec<D4> foldToFour(DN d, hn::Vec<DN> v) {
+HWY_INLINE hn::Vec<D4> foldToFour(DN /*d*/, hn::Vec<DN> v) {
   if constexpr (hn::MaxLanes(DN()) <= 4) {
     return v;
   } else {
