@@ -14,7 +14,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kChunk = 512;
 // ℓ in local radii for tightness 0 and 1. Shorter than 0.25: folds cross again; longer than 0.8:
 // twisted limbs lose a third of their volume.
-constexpr float kLoose = 0.25f, kTight = 0.87f;
+constexpr float kLoose = 0.3f, kTight = 0.94f;
 // How many ℓ away from any blend of weights the skin still moves.
 constexpr float kFar = 2.5f;
 // A residual of less than this share of an edge is rounding, not bending.

@@ -18,7 +18,7 @@ namespace fascia {
 
 // What a person turns, per point of the skin, each in [0, 1]. An empty list: the default.
 struct PoseDials {
-  static constexpr float kJiggle = 0.5f, kMuscle = 0.3f, kVolume = 0.85f, kTightness = 0.5f;
+  static constexpr float kJiggle = 0.5f, kMuscle = 0.3f, kVolume = 0.9f, kTightness = 0.5f;
   std::vector<float> jiggle;     // flesh that moves by itself: 0 none, 0.5 as flesh is, 1 jelly
   std::vector<float> muscle;     // 0 none, 0.3 natural, 1 bodybuilder
   std::vector<float> volume;     // share of a bent joint's lost volume that comes out around it

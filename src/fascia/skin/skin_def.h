@@ -72,7 +72,7 @@ enum class SkinQuantity {
 struct SkinPoseDef {
   double jiggle = 0.5;     // flesh that moves by itself: 0 none, 0.5 as flesh is, 1 jelly
   double muscle = 0.3;     // flexors that swell in a bend: 0 none, 0.3 natural, 1 bodybuilder
-  double volume = 0.85;    // share of what a bend takes from a joint that comes out around it
+  double volume = 0.9;     // share of what a bend takes from a joint that comes out around it
   double tightness = 0.5;  // how far the skin evens out: 0 slack, 1 taut
   // Beyond the pose: elastic skin with the material and tissue below is simulated, its strands'
   // inner ends where the pose function has the mesh.

@@ -79,6 +79,7 @@ Camera PosePictures::camera(const std::vector<Eigen::Vector3f>& points) const {
   if (!near.empty()) mean.setZero();
   for (const std::uint32_t p : near)
     mean += points[p].cast<double>() / static_cast<double>(near.size());
+  distance.reserve(near.size());
   for (const std::uint32_t p : near) distance.push_back((points[p].cast<double>() - mean).norm());
   // Without the farthest tenth: a few stray weights at a foot would make a knee tiny.
   std::sort(distance.begin(), distance.end());
