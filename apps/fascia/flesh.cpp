@@ -166,6 +166,16 @@ Json reportJson(const RiggedModel& model, const FleshFit& fit) {
                       {"joints", std::move(joints)}};
 }
 
+CharacterDef characterOf(const std::string& name, FleshFit fit, RigDef rig, SkinDef skin) {
+  CharacterDef def;
+  def.name = name;
+  def.skeleton = std::move(fit.skeleton);
+  def.flesh = std::move(fit.flesh);
+  def.rig = std::move(rig);
+  def.skin = std::move(skin);
+  return def;
+}
+
 // What follows a single joint stays as hard as its artist made it: say so, and how to have it else.
 void noteStiffPieces(const RiggedModel& model, std::vector<std::string>& notes) {
   const std::vector<char> stiff =
@@ -200,13 +210,9 @@ void flesh(const FleshOptions& options, const Console& console) {
     copyRig(model, options, rig);
     console.say("wrote " + rig.copy);
   }
-  CharacterDef def;
-  def.name = nameOf(options.output);
-  def.skeleton = std::move(fit.skeleton);
-  def.flesh = std::move(fit.flesh);
-  def.rig = rig.def;
-  def.skin = skinFor(model, options.dials);
-  writeCharacterFile(def, options.output);
+  writeCharacterFile(
+      characterOf(nameOf(options.output), std::move(fit), rig.def, skinFor(model, options.dials)),
+      options.output);
   console.say("wrote " + options.output);
   console.say(
       fmt::format("next: fascia render {0} -o {1}.png --layers muscle,skeleton\n"
@@ -259,15 +265,9 @@ void addFlesh(CLI::App& program, Console& console) {
   command.callback([options, &console] { flesh(*options, console); });
 }
 
-CharacterDef fleshedCharacter(std::shared_ptr<const RiggedModel> model) {
-  FleshFit fit = fitFlesh(*model);
-  CharacterDef def;
-  def.name = model->name;
-  def.skeleton = std::move(fit.skeleton);
-  def.flesh = std::move(fit.flesh);
-  def.skin = skinFor(*model, {});
-  def.rig = RigDef{.file = model->sourceFile, .model = std::move(model)};
-  return def;
+CharacterDef fleshedCharacter(const std::shared_ptr<const RiggedModel>& model) {
+  return characterOf(model->name, fitFlesh(*model), {.file = model->sourceFile, .model = model},
+                     skinFor(*model, {}));
 }
 
 }  // namespace fascia

@@ -8,6 +8,6 @@
 namespace fascia {
 
 // The character that 'fascia flesh' makes of a rigged mesh by default, without writing it.
-CharacterDef fleshedCharacter(std::shared_ptr<const RiggedModel> model);
+CharacterDef fleshedCharacter(const std::shared_ptr<const RiggedModel>& model);
 
 }  // namespace fascia
