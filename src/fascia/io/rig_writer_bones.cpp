@@ -87,6 +87,7 @@ class BoneWriter {
     if (onParents_ && restingError_m(model_.points_m, found_, bones, targets) <= least_m) return;
     const auto tracks = fitHelpers(model_.points_m, found_, bones, targets);
     std::vector<float> clock;
+    clock.reserve(times_s.size());
     for (const double t : times_s) clock.push_back(static_cast<float>(other.start_s + t));
     BakedAnimation animation{other.animation, static_cast<float>(other.start_s), -1, true};
     for (std::size_t h = 0; h < tracks.size(); ++h) {

@@ -78,13 +78,9 @@ class VideoWriter::Encoder final : public Sink {
   // One palette for the whole film, made of all of its colours. Ordered dithering keeps still what
   // stands still, and so the file small.
   static std::vector<std::string> gifArguments() {
-    return {"-filter_complex",
-            "split[seen][kept];[seen]palettegen=stats_mode=full[palette];"
-            "[kept][palette]paletteuse=dither=bayer:bayer_scale=4",
-            "-loop",
-            "0",
-            "-f",
-            "gif"};
+    const std::string palette = "split[seen][kept];[seen]palettegen=stats_mode=full[palette];";
+    const std::string colours = "[kept][palette]paletteuse=dither=bayer:bayer_scale=4";
+    return {"-filter_complex", palette + colours, "-loop", "0", "-f", "gif"};
   }
 
   void add(const Image& frame) override {

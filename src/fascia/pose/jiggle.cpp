@@ -16,9 +16,9 @@ constexpr float kReach = 2.2f;    // of a node's weight, in spacings
 constexpr float kDamping = 0.2f;  // ζ: a shake has died away after about four swings
 constexpr float kLimit = 0.3f;    // largest offset at full dial, in local radii
 constexpr float kLeastSoft = 0.05f;
-// A limb of 3 % of a figure of 1.7 m swings 6 times a second; thicker ones and larger figures
+// A limb of 3 % of a figure of 1.7 m swings 7 times a second; thicker ones and larger figures
 // slower, as √(1 / length).
-constexpr float kFrequency_Hz = 6, kAtRadius = 0.03f, kAtSize_m = 1.7f;
+constexpr float kFrequency_Hz = 7, kAtRadius = 0.03f, kAtSize_m = 1.7f;
 
 float frequency_Hz(float radius_m, float size_m, float dial) {
   const float thickness = std::sqrt(kAtRadius * size_m / std::max(radius_m, 0.01f * size_m));
