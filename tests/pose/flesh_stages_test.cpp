@@ -69,6 +69,24 @@ TEST(MuscleSwell, IsNothingInTheRestPose) {
   EXPECT_LT(farthest(posed(limb.skin(limb.dials(0, 1, 1)), limb.turned(0)), limb.points), 1e-6f);
 }
 
+// What a bend takes from the inside comes out there, where flesh is, not over the bone outside.
+TEST(JointVolume, ComesOutOnTheInnerSideOfTheBend) {
+  const Limb limb;
+  const auto bent = limb.turned(kPi / 2);  // towards +y
+  const Points without = posed(limb.skin(limb.dials(0, 0, 0)), bent);
+  const Points with = posed(limb.skin(limb.dials(0, 0, 1)), bent);
+  double moved[2] = {0, 0}, count[2] = {0, 0};
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    const Eigen::Vector3f& rest = limb.points[i];
+    if (rest.x() < 0.2f || rest.x() > 0.26f || std::abs(rest.y()) < 0.04f) continue;
+    const int side = rest.y() > 0 ? 0 : 1;
+    moved[side] += double{(with[i] - without[i]).norm()};
+    ++count[side];
+  }
+  EXPECT_GT(moved[0] / count[0], 1e-4);
+  EXPECT_GT(moved[0] / count[0], 1.5 * moved[1] / count[1]);
+}
+
 std::vector<float> dialOf(const Prepared& p, float value) {
   return std::vector<float>(p.mesh.size(), value);
 }
