@@ -115,7 +115,8 @@ SampledMotion playedTwice(const RiggedModel& model, int motion, const MotionCycl
     // The end of a time is the beginning of the next; the very last frame may be the motion's own.
     const bool own = f == 2 * period && period < once.frameCount();
     const std::size_t source = own ? period : f % period;
-    const double times = own ? 1.0 : static_cast<double>(f / period);
+    const std::size_t round = own ? 1 : f / period;
+    const auto times = static_cast<double>(round);
     poseRig(model, motion, static_cast<double>(source) / once.rate_hz, world);
     for (std::size_t j = 0; j < joints; ++j) {
       const int parent = model.joints[j].parent;
