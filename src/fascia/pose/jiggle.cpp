@@ -6,6 +6,7 @@
 #include <queue>
 #include <unordered_map>
 
+#include <fascia/base/parallel.h>
 #include <fascia/pose/softness.h>
 
 namespace fascia {
@@ -16,6 +17,8 @@ constexpr float kReach = 2.2f;    // of a node's weight, in spacings
 constexpr float kDamping = 0.2f;  // ζ: a shake has died away after about four swings
 constexpr float kLimit = 0.3f;    // largest offset at full dial, in local radii
 constexpr float kLeastSoft = 0.05f;
+constexpr float kLeastShare = 0.005f;  // of a node in a point: less is not seen, but costs time
+constexpr std::size_t kChunk = 512;
 // A limb of 3 % of a figure of 1.7 m swings 7 times a second; thicker ones and larger figures
 // slower, as √(1 / length).
 constexpr float kFrequency_Hz = 7, kAtRadius = 0.03f, kAtSize_m = 1.7f;
@@ -65,7 +68,8 @@ Jiggle::Jiggle(const PoseSource& source, const PoseMesh& mesh, const LimbParts& 
     float sum = 0;
     for (const Share& s : shares[i]) sum += s.weight;
     const float scale = softness[i] / std::max(sum, 0.3f);
-    for (const Share& s : shares[i]) shares_.push_back({s.node, scale * s.weight});
+    for (const Share& s : shares[i])
+      if (s.weight > kLeastShare * sum) shares_.push_back({s.node, scale * s.weight});
     points_.push_back(i);
     firstShare_.push_back(static_cast<std::uint32_t>(shares_.size()));
   }
@@ -136,12 +140,15 @@ void Jiggle::add(const JiggleState& state, FrameArray& shown, std::span<Vector4f
     const float cut = length > 0 ? limit * std::tanh(length / limit) / length : 0;
     shown[k] = cut * state.offset[k];
   }
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    Vector4f sum = Vector4f::Zero();
-    for (std::uint32_t q = firstShare_[p]; q < firstShare_[p + 1]; ++q)
-      sum += shares_[q].weight * shown[shares_[q].node];
-    position[points_[p]] += sum;
-  }
+  parallelFor((points_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(points_.size(), kChunk * (chunk + 1));
+    for (std::size_t p = kChunk * chunk; p < end; ++p) {
+      Vector4f sum = Vector4f::Zero();
+      for (std::uint32_t q = firstShare_[p]; q < firstShare_[p + 1]; ++q)
+        sum += shares_[q].weight * shown[shares_[q].node];
+      position[points_[p]] += sum;
+    }
+  });
 }
 
 }  // namespace fascia
