@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fascia/base/parallel.h>
+#include <fascia/rig/joint_meaning.h>
 
 namespace fascia {
 namespace {
@@ -59,6 +60,26 @@ float jointRadius(const PoseSource& source, const PoseMesh& mesh, const LimbPart
     ++count;
   }
   return count < 4 ? 0 : sum / count;
+}
+
+// Per point the share of its weight that does not belong to the head and what hangs on it: on a
+// skull no flesh comes out.
+std::vector<float> offSkull(const PoseSource& source) {
+  const std::vector<JointMeaning> meanings = guessMeanings(source.joints);
+  std::vector<char> skull;
+  for (std::size_t j = 0; j < source.joints.size(); ++j) {
+    const int parent = source.joints[j].parent;
+    skull.push_back(meanings[j].part == BodyPart::head ||
+                    (parent >= 0 && skull[static_cast<std::size_t>(parent)]));
+  }
+  std::vector<float> share;
+  for (const PointWeights& w : source.weights) {
+    share.push_back(1);
+    for (std::size_t k = 0; k < PointWeights::kMost; ++k)
+      if (w.weight[k] > 0 && skull[w.joint[k]]) share.back() -= w.weight[k];
+    share.back() = std::max(0.f, share.back());
+  }
+  return share;
 }
 
 }  // namespace
@@ -139,7 +160,9 @@ void JointVolume::prepare(const PoseSource& source, const PoseMesh& mesh, const 
 }
 
 JointVolume::JointVolume(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
-                         const SkinSpread& spread, std::span<const float> keep) {
+                         const SkinSpread& spread, std::span<const float> dial) {
+  std::vector<float> keep = offSkull(source);
+  for (std::size_t i = 0; i < keep.size(); ++i) keep[i] *= dial[i];
   std::vector<Joint> all(source.joints.size());
   std::vector<char> chosen(all.size(), 0);
   parallelFor(all.size(), [&](std::size_t j) {
