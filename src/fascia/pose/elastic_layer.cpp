@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 
 #include <fascia/base/parallel.h>
 
@@ -29,24 +28,12 @@ bool isBlended(const PoseSource& source, const PoseMesh& mesh, const LimbParts& 
   return false;
 }
 
-// Along edges from the nearest blended point.
-std::vector<float> wayFromBlends(const PoseSource& source, const PoseMesh& mesh,
-                                 const LimbParts& parts) {
-  using Entry = std::pair<float, std::uint32_t>;
-  std::vector<float> way(mesh.size(), std::numeric_limits<float>::max());
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+std::vector<std::uint32_t> blendedPoints(const PoseSource& source, const PoseMesh& mesh,
+                                         const LimbParts& parts) {
+  std::vector<std::uint32_t> points;
   for (std::uint32_t i = 0; i < mesh.size(); ++i)
-    if (isBlended(source, mesh, parts, i)) queue.push({way[i] = 0, i});
-  while (!queue.empty()) {
-    const auto [so, i] = queue.top();
-    queue.pop();
-    if (so > way[i]) continue;
-    for (const PoseMesh::Edge& e : mesh.around(i)) {
-      const float further = so + (mesh.rest[i] - mesh.rest[e.to]).norm();
-      if (further < way[e.to]) queue.push({way[e.to] = further, e.to});
-    }
-  }
-  return way;
+    if (isBlended(source, mesh, parts, i)) points.push_back(i);
+  return points;
 }
 
 }  // namespace
@@ -56,7 +43,7 @@ ElasticLayer::ElasticLayer(const PoseSource& source, const PoseMesh& mesh, const
   std::vector<float> smoothing_m(mesh.size());
   for (std::size_t i = 0; i < mesh.size(); ++i)
     smoothing_m[i] = (kLoose + (kTight - kLoose) * tightness[i]) * parts.radius_m[i];
-  number(mesh, wayFromBlends(source, mesh, parts), smoothing_m, rigid);
+  number(mesh, wayAlongEdges(mesh, blendedPoints(source, mesh, parts)), smoothing_m, rigid);
   storeEdges(mesh);
   factorize(mesh, smoothing_m);
 }

@@ -25,6 +25,8 @@ constexpr int kPushes = 2;
 // The last word.
 constexpr int kPasses = 4;
 constexpr std::uint8_t kRings = 5;  // 1: hit points
+// Skin near a contact takes part in it: by this factor less from point to point.
+constexpr float kInfluence = 0.6f;
 
 }  // namespace
 
@@ -228,6 +230,19 @@ void LimbContact::spreadActive(Scratch& scratch) const {
       }
     }
   }
+  scratch.influence.resize(rest_.size());
+  scratch.influenceNext.resize(rest_.size());
+  for (const std::uint32_t i : scratch.active)
+    scratch.influence[i] = scratch.ring[i] == 1 ? scratch.hit[i].gate : 0;
+  for (int pass = 0; pass < kRings - 1; ++pass) {
+    for (const std::uint32_t i : scratch.active) {
+      float most = 0;
+      for (std::uint32_t q = firstEdge_[i]; q < firstEdge_[i + 1]; ++q)
+        if (scratch.ring[edges_[q].to]) most = std::max(most, scratch.influence[edges_[q].to]);
+      scratch.influenceNext[i] = std::max(scratch.influence[i], kInfluence * most);
+    }
+    for (const std::uint32_t i : scratch.active) scratch.influence[i] = scratch.influenceNext[i];
+  }
 }
 
 void LimbContact::finish(std::span<const JointMotion> motion,
@@ -271,7 +286,8 @@ void LimbContact::finish(std::span<const JointMotion> motion,
     if (near.empty()) return x;
     const Hit hit = find(motion, near, i, x);
     if (hit.pair < 0) return x;
-    const float gate = hit.gate * scratch.pairGate[static_cast<std::size_t>(hit.pair)];
+    const float gate =
+        scratch.influence[i] * hit.gate * scratch.pairGate[static_cast<std::size_t>(hit.pair)];
     return pushOut(motion, pairs_[static_cast<std::size_t>(hit.pair)], i, x, gate,
                    std::max(hit.depth_m, scratch.hit[i].depth_m));
   };

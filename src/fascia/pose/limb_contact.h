@@ -31,6 +31,7 @@ class LimbContact {
     std::vector<std::vector<std::uint32_t>> near;  // per cluster: pairs
     std::vector<std::uint32_t> active;             // points that the last word moves
     std::vector<std::uint8_t> ring;                // per point: 0 untouched, 1 hit, 2 … near it
+    std::vector<float> influence, influenceNext;   // per point: of the hits around it, 0 … 1
     FrameArray before, next;
     bool touched = false;
   };

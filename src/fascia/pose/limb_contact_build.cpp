@@ -16,26 +16,6 @@ constexpr float kInner = 0.4f;
 constexpr float kNobody = 1e9f;
 constexpr std::size_t kClusterPoints = 32;
 
-// Halves along the longest side until a cluster is small.
-template <class Add>
-void divide(const PoseMesh& mesh, std::span<std::uint32_t> points, const Add& add) {
-  if (points.size() <= kClusterPoints) {
-    add(points);
-    return;
-  }
-  Box box;
-  for (const std::uint32_t i : points) box.add(mesh.rest[i].cast<double>());
-  Eigen::Index axis;
-  box.size().maxCoeff(&axis);
-  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
-  std::nth_element(points.begin(), middle, points.end(), [&](std::uint32_t p, std::uint32_t q) {
-    const float a = mesh.rest[p][axis], b = mesh.rest[q][axis];
-    return a < b || (a == b && p < q);
-  });
-  divide(mesh, points.first(points.size() / 2), add);
-  divide(mesh, points.subspan(points.size() / 2), add);
-}
-
 // Bones whose skin hangs together, both ways: only that folds in a crease. The shells of a doll's
 // joints turn inside of each other instead.
 std::set<std::array<std::uint32_t, 2>> seamsOf(const PoseMesh& mesh, const LimbParts& parts) {
@@ -114,7 +94,7 @@ void LimbContact::findClusters(const PoseMesh& mesh, std::span<const char> rigid
     if (pairsOf_[a].empty()) continue;
     std::vector<std::uint32_t> skin = parts_->skin[a];
     std::erase_if(skin, [&](std::uint32_t i) { return rigid[i] != 0; });
-    divide(mesh, skin, [&](std::span<const std::uint32_t> points) {
+    forClusters(mesh, skin, kClusterPoints, [&](std::span<const std::uint32_t> points) {
       for (const std::uint32_t i : points)
         clusterOf_[i] = static_cast<std::int32_t>(clusters_.size());
       clusters_.push_back({a, {points.begin(), points.end()}});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <queue>
 
 namespace fascia {
 namespace {
@@ -190,6 +191,43 @@ float weightDistance(const PointWeights& a, const PointWeights& b) {
   for (std::size_t k = 0; k < PointWeights::kMost; ++k)
     if (a.weight[k] > 0) common += std::min(a.weight[k], share(b, a.joint[k]));
   return 2 - 2 * std::min(1.f, common);
+}
+
+std::vector<float> wayAlongEdges(const PoseMesh& mesh, std::span<const std::uint32_t> from,
+                                 float most_m) {
+  using Entry = std::pair<float, std::uint32_t>;
+  std::vector<float> way(mesh.size(), std::numeric_limits<float>::max());
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  for (const std::uint32_t i : from) queue.push({way[i] = 0, i});
+  while (!queue.empty()) {
+    const auto [so, i] = queue.top();
+    queue.pop();
+    if (so > way[i] || so > most_m) continue;
+    for (const PoseMesh::Edge& e : mesh.around(i)) {
+      const float further = so + (mesh.rest[i] - mesh.rest[e.to]).norm();
+      if (further < way[e.to]) queue.push({way[e.to] = further, e.to});
+    }
+  }
+  return way;
+}
+
+void forClusters(const PoseMesh& mesh, std::span<std::uint32_t> points, std::size_t most,
+                 const std::function<void(std::span<const std::uint32_t>)>& add) {
+  if (points.size() <= most) {
+    if (!points.empty()) add(points);
+    return;
+  }
+  Box box;
+  for (const std::uint32_t i : points) box.add(mesh.rest[i].cast<double>());
+  Eigen::Index axis;
+  box.size().maxCoeff(&axis);
+  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+  std::nth_element(points.begin(), middle, points.end(), [&](std::uint32_t p, std::uint32_t q) {
+    const float a = mesh.rest[p][axis], b = mesh.rest[q][axis];
+    return a < b || (a == b && p < q);
+  });
+  forClusters(mesh, points.first(points.size() / 2), most, add);
+  forClusters(mesh, points.subspan(points.size() / 2), most, add);
 }
 
 void smoothAlongEdges(const PoseMesh& mesh, int passes, std::vector<float>& values) {

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -45,6 +47,16 @@ PoseMesh makePoseMesh(const PoseSource& source);
 
 // Sum of the differences of two points' weights, 0 (alike) to 2.
 float weightDistance(const PointWeights& a, const PointWeights& b);
+
+// How far each point is along edges from the nearest of some points; those that are farther than
+// `most_m`: that it is more, no matter how much.
+std::vector<float> wayAlongEdges(const PoseMesh& mesh, std::span<const std::uint32_t> from,
+                                 float most_m = std::numeric_limits<float>::max());
+
+// Parts `points` into compact clusters of at most so many (halves along the longest side) and calls
+// add() with each; reorders them.
+void forClusters(const PoseMesh& mesh, std::span<std::uint32_t> points, std::size_t most,
+                 const std::function<void(std::span<const std::uint32_t>)>& add);
 
 // The mean of each value and its neighbours', so many times.
 void smoothAlongEdges(const PoseMesh& mesh, int passes, std::vector<float>& values);

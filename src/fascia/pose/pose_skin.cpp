@@ -44,6 +44,10 @@ PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
   muscles_ = MuscleSwell(source, mesh_, *parts_, spread,
                          valuesOf(dials.muscle, rigid_, PoseDials::kMuscle));
   jiggle_ = Jiggle(source, mesh_, *parts_, valuesOf(dials.jiggle, rigid_, PoseDials::kJiggle));
+  std::vector<float> softness = softnessOf(source, mesh_, *parts_);
+  for (std::size_t i = 0; i < softness.size(); ++i)
+    if (rigid_[i]) softness[i] = 0;
+  press_ = LimbPress(source, mesh_, parts_, softness);
 }
 
 // Joints relative to an origin that goes with the root: floats stay exact far away from the
@@ -95,6 +99,7 @@ void PoseSkin::evaluate(std::span<const Transform> motion, const Moment& moment,
   }
   if (moment.obstacles)
     Dents::press(mesh_, *moment.obstacles, origin, scratch.position, scratch.dents);
+  press_.press(scratch.joints, scratch.position, scratch.press);
   contact_.finish(scratch.joints, scratch.rotation, scratch.position, scratch.contact);
   const Eigen::Vector3f shift = origin.cast<float>();
   forChunks(count, [&](std::size_t begin, std::size_t end) {

@@ -11,6 +11,7 @@
 #include <fascia/pose/jiggle.h>
 #include <fascia/pose/joint_volume.h>
 #include <fascia/pose/limb_contact.h>
+#include <fascia/pose/limb_press.h>
 #include <fascia/pose/muscle_swell.h>
 #include <fascia/pose/pose_mesh.h>
 
@@ -36,6 +37,7 @@ struct PoseDials {
 //   muscle_swell    flexors swell, extensors thin
 //   jiggle          flesh swings behind
 //   dents           props press in
+//   limb_press      limbs that share no crease press on each other
 //   limb_contact    the last word: both sides of a crease end on one surface
 // Constant once built, any number of threads may evaluate; same bits on any number of threads.
 class PoseSkin {
@@ -50,6 +52,7 @@ class PoseSkin {
     FrameArray shown;          // of the jiggle's nodes
     Dents::Scratch dents;
     LimbContact::Scratch contact;
+    LimbPress::Scratch press;
     ElasticLayer::Scratch elastic;
   };
 
@@ -87,6 +90,7 @@ class PoseSkin {
   JointVolume volume_;
   MuscleSwell muscles_;
   Jiggle jiggle_;
+  LimbPress press_;
 };
 
 }  // namespace fascia
