@@ -100,16 +100,19 @@ bool JointVolume::choose(const PoseSource& source, const PoseMesh& mesh, const L
   const bool limb = !atHub && toParent.norm() >= 0.5f * radius;
   out.limbParent = limb ? wide(toParent.normalized()) : Vector4f::Zero();
   out.limbJoint = limb ? wide(parts.part[joint].axis()) : Vector4f::Zero();
-  // Skin of armpits and groins belongs to what carries the shoulder and the hip.
-  const int beyond = parts.bodyAbove(parent);
+  // Skin of armpits and groins belongs to what carries the shoulder and the hip, and to the next.
+  std::vector<char> mine(parts.part.size(), 0);
+  mine[joint] = mine[static_cast<std::size_t>(parts.parent[joint])] = 1;
+  int body = above;
+  for (int steps = 0; steps < 3 && body >= 0; ++steps) {
+    mine[static_cast<std::size_t>(body)] = 1;
+    body = parts.bodyAbove(static_cast<std::size_t>(body));
+  }
   bump.assign(mesh.size(), -1.f);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const std::size_t home = parts.home[i];
-    const bool mine = home == joint || home == parent ||
-                      static_cast<int>(home) == parts.parent[joint] ||
-                      static_cast<int>(home) == beyond;
     const float away = (mesh.rest[i] - center).norm() / (kAround * radius);
-    if (!mine || away >= 1 ||
+    if (!mine[home] || away >= 1 ||
         parts.own_m[i] <= -kSkinDepth * std::max(1e-6f, parts.part[home].meanRadius_m()))
       continue;
     bump[i] = smoothStep(1.2f * (1 - away));

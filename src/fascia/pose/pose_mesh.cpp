@@ -5,6 +5,8 @@
 #include <numeric>
 #include <queue>
 
+#include <fascia/pose/point_grid.h>
+
 namespace fascia {
 namespace {
 
@@ -59,46 +61,11 @@ std::vector<std::uint32_t> piecesOf(const PoseMesh& mesh) {
   return piece;
 }
 
-// Points in cubes of the reach of virtual edges, found by sorting.
-class CellGrid {
- public:
-  CellGrid(const std::vector<Eigen::Vector3f>& points, float cell_m) : cell_m_(cell_m) {
-    for (std::uint32_t i = 0; i < points.size(); ++i) entries_.push_back({keyOf(points[i]), i});
-    std::sort(entries_.begin(), entries_.end());
-  }
-
-  template <class Visit>
-  void visitNear(const Eigen::Vector3f& p, const Visit& visit) const {
-    const Key middle = keyOf(p);
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y) {
-        // Cells that differ in z only follow each other.
-        const Key low{middle[0] + x, middle[1] + y, middle[2] - 1};
-        const Key high{middle[0] + x, middle[1] + y, middle[2] + 2};
-        auto e = std::lower_bound(entries_.begin(), entries_.end(), Entry{low, 0});
-        for (; e != entries_.end() && e->first < high; ++e) visit(e->second);
-      }
-  }
-
- private:
-  using Key = std::array<int, 3>;
-  using Entry = std::pair<Key, std::uint32_t>;
-  Key keyOf(const Eigen::Vector3f& p) const {
-    Key key;
-    for (int a = 0; a < 3; ++a)
-      key[static_cast<std::size_t>(a)] = static_cast<int>(std::floor(p[a] / cell_m_));
-    return key;
-  }
-
-  float cell_m_;
-  std::vector<Entry> entries_;
-};
-
 void addVirtualEdges(const PoseMesh& mesh, const std::vector<std::uint32_t>& piece,
                      std::span<const PointWeights> weights, std::vector<HalfEdge>& edges) {
   if (std::adjacent_find(piece.begin(), piece.end(), std::not_equal_to<>()) == piece.end()) return;
   const float reach = kReach * mesh.size_m;
-  const CellGrid grid(mesh.rest, reach);
+  const PointGrid grid(mesh.rest, reach);
   for (std::uint32_t i = 0; i < mesh.size(); ++i) {
     float nearest = reach * reach;
     std::uint32_t best = i;
@@ -172,6 +139,7 @@ PoseMesh makePoseMesh(const PoseSource& source) {
   addVirtualEdges(mesh, piece, source.weights, edges);
   orientNormals(piece, mesh);
   storeEdges(std::move(edges), mesh);
+  mesh.piece = piece;
   const double total = std::accumulate(mesh.area_m2.begin(), mesh.area_m2.end(), 0.0);
   const double points = std::max<double>(1, static_cast<double>(mesh.size()));
   const float least =

@@ -33,6 +33,7 @@ struct PoseMesh {
   std::vector<float> area_m2;           // a third of the triangles around a point, > 0
   std::vector<float> edge_m;            // mean length of the edges of a point
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> piece;  // per point: the same for all that hang together by triangles
   std::vector<std::uint32_t> firstEdge;  // per point, one more at the end
   std::vector<Edge> edges;               // by point, each edge from both of its ends
   float size_m = 0;                      // diagonal of the box

@@ -48,6 +48,7 @@ PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
   for (std::size_t i = 0; i < softness.size(); ++i)
     if (rigid_[i]) softness[i] = 0;
   press_ = LimbPress(source, mesh_, parts_, softness);
+  nesting_ = ShellNesting(source, mesh_, rigid_);
 }
 
 // Joints relative to an origin that goes with the root: floats stay exact far away from the
@@ -101,6 +102,7 @@ void PoseSkin::evaluate(std::span<const Transform> motion, const Moment& moment,
     Dents::press(mesh_, *moment.obstacles, origin, scratch.position, scratch.dents);
   press_.press(scratch.joints, scratch.position, scratch.press);
   contact_.finish(scratch.joints, scratch.rotation, scratch.position, scratch.contact);
+  nesting_.nest(scratch.joints, scratch.position, scratch.nesting);
   const Eigen::Vector3f shift = origin.cast<float>();
   forChunks(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -14,6 +14,7 @@
 #include <fascia/pose/limb_press.h>
 #include <fascia/pose/muscle_swell.h>
 #include <fascia/pose/pose_mesh.h>
+#include <fascia/pose/shell_nesting.h>
 
 namespace fascia {
 
@@ -39,6 +40,7 @@ struct PoseDials {
 //   dents           props press in
 //   limb_press      limbs that share no crease press on each other
 //   limb_contact    the last word: both sides of a crease end on one surface
+//   shell_nesting   pieces that lie on each other move alike
 // Constant once built, any number of threads may evaluate; same bits on any number of threads.
 class PoseSkin {
  public:
@@ -53,6 +55,7 @@ class PoseSkin {
     Dents::Scratch dents;
     LimbContact::Scratch contact;
     LimbPress::Scratch press;
+    ShellNesting::Scratch nesting;
     ElasticLayer::Scratch elastic;
   };
 
@@ -91,6 +94,7 @@ class PoseSkin {
   MuscleSwell muscles_;
   Jiggle jiggle_;
   LimbPress press_;
+  ShellNesting nesting_;
 };
 
 }  // namespace fascia
