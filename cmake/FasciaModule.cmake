@@ -17,6 +17,9 @@ function(fascia_module name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp")
   set(target fascia_${name})
   add_library(${target} STATIC ${sources})
+  # Highway includes these once per instruction set, by their own name.
+  list(FILTER sources INCLUDE REGEX "kernels\\.cpp$")
+  set_source_files_properties(${sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   add_library(fascia::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES
     EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
@@ -28,7 +31,7 @@ function(fascia_module name)
     PUBLIC ${ARG_DEPENDS} ${ARG_LINK}
     PRIVATE ${ARG_LINK_PRIVATE} $<BUILD_INTERFACE:fascia_options>)
   # Half of what a file costs to compile are the headers that all have in common. Files include what
-  # they use all the same: clang-tidy and a build without precompiled headers see to it.
+  # they use all the same: a build with CMAKE_DISABLE_PRECOMPILE_HEADERS, file by file, sees to it.
   if(name STREQUAL "math")
     target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath>
       <functional> <memory> <span> <string> <string_view> <vector>)

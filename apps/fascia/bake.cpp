@@ -23,7 +23,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter = R"(Formats, by the ending of the file to write:
+constexpr const char* kBakeFooter = R"(Formats, by the ending of the file to write:
   .glb     glTF: skin, texture, skeleton, animation; plays in any viewer
   .pc2     point cache for Blender, Maya, Houdini
   .mdd     point cache for those and Cinema 4D
@@ -209,7 +209,7 @@ void addBake(CLI::App& program, Console& console) {
   options->simulation.addTo(command);
   console.addFlags(command);
   console.addVerboseFlag(command);
-  command.footer(kFooter);
+  command.footer(kBakeFooter);
   command.callback([options, &console] { bake(*options, console); });
 }
 

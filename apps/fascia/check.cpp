@@ -12,7 +12,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCheckFooter =
     R"(Every fault is listed, a line each, with file, line and the place in the document.
 
 Examples:
@@ -54,7 +54,7 @@ void addCheck(CLI::App& program, Console& console) {
       ->required()
       ->type_name("");
   console.addFlags(command);
-  command.footer(kFooter);
+  command.footer(kCheckFooter);
   command.callback([paths, &console] { check(*paths, console); });
 }
 

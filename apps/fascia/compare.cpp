@@ -10,7 +10,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCompareFooter =
     R"(INPUT is a character that 'fascia flesh' made, its cache, or a rigged mesh itself (.glb, .fbx, …),
 which gets flesh as 'fascia flesh' gives it by default. Plain is what every program makes of the rig:
 the same joints, points and weights, without Fascia.
@@ -110,7 +110,7 @@ void addCompare(CLI::App& program, Console& console) {
   addPictureOptions(command, *options);
   console.addFlags(command);
   console.addVerboseFlag(command);
-  command.footer(kFooter);
+  command.footer(kCompareFooter);
   command.callback([options, &console] { compare(*options, console); });
 }
 

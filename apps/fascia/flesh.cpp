@@ -44,7 +44,7 @@ SkinDef skinFor(const RiggedModel& model, const SkinPoseDef& dials) {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter =
+constexpr const char* kFleshFooter =
     R"(Fills a rigged mesh with flesh: solids on its bones, under a layer of fat, inside of the skin.
 The character file names the mesh's file, which must lie in the same folder or below it; if it does
 not, a copy NAME.rig.glb is put beside the character file.
@@ -261,7 +261,7 @@ void addFlesh(CLI::App& program, Console& console) {
       ->check(CLI::Range(0, 1024));
   command.add_flag("--force", options->force, "Overwrite files");
   console.addFlags(command);
-  command.footer(kFooter);
+  command.footer(kFleshFooter);
   command.callback([options, &console] { flesh(*options, console); });
 }
 

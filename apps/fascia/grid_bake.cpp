@@ -16,7 +16,6 @@ namespace {
 // character that is a thousand pixels high; but no more than games like.
 constexpr double kTolerance = 5e-4;  // of the height
 constexpr int kMostTargets = 32;
-constexpr int kMostHelpers = 128;
 
 std::string wayOf(const RigBakeOptions& options) {
   return options.as.empty() ? "morphs" : options.as;

@@ -20,7 +20,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kInfoFooter =
     R"(Without a file: about the program and this machine, for a bug report.
 
 With --motion FILE.bvh: how the joints of a motion capture file would drive the rig's; the lines are
@@ -223,7 +223,7 @@ void addInfo(CLI::App& program, Console& console) {
       .add_option("--joint-map", options->joint_map, "Pairs of joints that win over the guesses")
       ->type_name("FILE");
   console.addFlags(command);
-  command.footer(kFooter);
+  command.footer(kInfoFooter);
   command.callback([options, &console] { info(*options, console); });
 }
 

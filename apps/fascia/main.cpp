@@ -10,7 +10,7 @@ namespace {
 
 enum ExitCode { ok = 0, badInput = 1, badUsage = 2 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kProgramFooter = R"(Examples:
   fascia check examples/penguin.fascia.json
   fascia bake examples/penguin.fascia.json -o penguin.glb
   fascia render examples/penguin.fascia.json -o penguin.mp4
@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
       "Layered elastic characters: a skeleton, flesh on it, and a skin that lives; and scenes of "
       "elastic bodies around them.",
       "fascia");
-  program.footer(kFooter);
+  program.footer(kProgramFooter);
   program.set_version_flag("--version", "fascia " FASCIA_VERSION);
   program.require_subcommand(0, 1);  // none is refused below: an unknown one then gets named
   program.callback([&program] {

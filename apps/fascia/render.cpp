@@ -18,7 +18,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kRenderFooter =
     R"(INPUT is a character or a scene, which is simulated first, or a cache that 'fascia bake' wrote. A
 .png shows the moment --time, a .mp4 the whole motion (without ffmpeg: a folder of pictures).
 
@@ -138,7 +138,7 @@ void addRender(CLI::App& program, Console& console) {
   options->simulation.addTo(command);
   console.addFlags(command);
   console.addVerboseFlag(command);
-  command.footer(kFooter);
+  command.footer(kRenderFooter);
   command.callback([options, &console] { render(*options, console); });
 }
 

@@ -12,8 +12,6 @@
 namespace fascia {
 namespace {
 
-// Helpers that come by themselves stop here: more are no bother for a player, but for people.
-constexpr int kMostHelpers = 128;
 // They are looked for in some of the frames: what all frames together have more.
 constexpr double kMargin = 0.96;
 // Other motions that change by more than this share of the height are told one by one, in percent.

@@ -14,6 +14,9 @@
 
 namespace fascia {
 
+// Helpers that come by themselves stop here: more are no bother for a player, but for people.
+inline constexpr int kMostHelpers = 128;
+
 // How a simulated motion goes back into the file that a character's rig came from.
 struct RigBakeOptions {
   std::string as;  // bones, morphs or cache; empty = bones, of a skin on a grid morphs

@@ -128,7 +128,7 @@ int chooseMotion(const Character& character, const std::string& name) {
   for (std::size_t i = 0; i < character.motionCount(); ++i)
     known.push_back(character.motion(i).name);
   Issue issue;
-  issue.message = fmt::format("no motion is named {}; there are: {}", fascia::quoted(name),
+  issue.message = fmt::format("no motion is named {}; there are: {}", quotedName(name),
                               known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")));
   issue.hint = didYouMean(name, known);
   throw Error(std::move(issue));

@@ -32,8 +32,8 @@ TEST(NearestName, IsEmptyWhereNothingIsNearAndForEndlessNames) {
 }
 
 TEST(Quoted, CutsLongNamesAndHidesControlCharacters) {
-  EXPECT_EQ(quoted("el\nbow\x1b"), "'el?bow?'");
-  EXPECT_LT(fascia::quoted(std::string(5000, 'a')).size(), 100);
+  EXPECT_EQ(quotedName("el\nbow\x1b"), "'el?bow?'");
+  EXPECT_LT(quotedName(std::string(5000, 'a')).size(), 100);
 }
 
 TEST(ShortNumber, ReadsAsAPersonWouldWriteIt) {

@@ -58,7 +58,7 @@ TEST(BodyField, AllocatesNothingAfterConstruction) {
 
 TEST(Puppet, AllocatesOnlyWhenAControlBeginsOrEnds) {
   const ThreadLimit one(1);
-  test::Stage stage(3, 2);
+  test::PuppetStage stage(3, 2);
   Puppet& puppet = *stage.puppet;
   puppet.run(makeChase(stage["right 0"], stage["left 1"], {.duration_s = 10}));
   const KeyframedPath path({{0, Vec3(1, 0, 0), {}, {}},

@@ -7,19 +7,19 @@
 namespace fascia {
 namespace {
 
-using test::Stage;
+using test::PuppetStage;
 
 constexpr BodyScheme kSchemes[] = {BodyScheme::explicitEuler, BodyScheme::implicitEuler,
                                    BodyScheme::energyConserving};
 
 double stepOf(BodyScheme scheme) {
-  return scheme == BodyScheme::explicitEuler ? 1.0 / 4800 : Stage::kStep_s;  // stable
+  return scheme == BodyScheme::explicitEuler ? 1.0 / 4800 : PuppetStage::kStep_s;  // stable
 }
 
 TEST(Chase, MeetsATargetOfConstantVelocityInPlaceAndFinalVelocity) {
   for (const BodyScheme scheme : kSchemes) {
     for (const int dimension : {2, 3}) {
-      Stage stage(dimension, 2, scheme);
+      PuppetStage stage(dimension, 2, scheme);
       stage.setVelocity(0, Vec3(-1, 0.5, 0)), stage.setVelocity(1, Vec3(0.4, 0.8, 0));
       const Vec3 final(2, -1, 0);
       const BehaviourId chase =
@@ -27,7 +27,7 @@ TEST(Chase, MeetsATargetOfConstantVelocityInPlaceAndFinalVelocity) {
                                       {.duration_s = 0.5, .finalVelocity_m_per_s = final}));
       stage.stepUntil(0.5, stepOf(scheme));
       EXPECT_TRUE(stage.puppet->running(chase));
-      stage.puppet->update(Stage::kStep_s);
+      stage.puppet->update(PuppetStage::kStep_s);
       EXPECT_FALSE(stage.puppet->running(chase));
       EXPECT_LT((stage.position("right 0") - stage.position("middle 1")).norm(), 1e-9);
       EXPECT_LT((stage.velocity("right 0") - final).norm(), 1e-9);
@@ -37,7 +37,7 @@ TEST(Chase, MeetsATargetOfConstantVelocityInPlaceAndFinalVelocity) {
 }
 
 TEST(Chase, IsThePlannedCubicAllTheWay) {
-  Stage stage(3, 2);
+  PuppetStage stage(3, 2);
   stage.setVelocity(0, Vec3(0, 1, 0)), stage.setVelocity(1, Vec3(0.4, 0.8, 0));
   const Vec3 start = stage.position("right 0"),
              end = stage.position("middle 1") + 0.4 * Vec3(0.4, 0.8, 0);
@@ -54,7 +54,7 @@ TEST(Chase, IsThePlannedCubicAllTheWay) {
 TEST(Chase, MissesAnAcceleratedTargetByItsAccelerationOverOneStepOnly) {
   // The last plan is a step old: it is off by a h².
   for (const double h : {1.0 / 60, 1.0 / 240}) {
-    Stage stage(3, 2, BodyScheme::implicitEuler, Vec3(0, -9.81, 0));
+    PuppetStage stage(3, 2, BodyScheme::implicitEuler, Vec3(0, -9.81, 0));
     stage.setVelocity(1, Vec3(0.2, 3, 0));
     stage.puppet->run(makeChase(stage["right 0"], stage["middle 1"], {.duration_s = 0.5}));
     stage.stepUntil(0.5, h);
@@ -65,11 +65,11 @@ TEST(Chase, MissesAnAcceleratedTargetByItsAccelerationOverOneStepOnly) {
 
 TEST(Chase, ArrivesByDefaultWithoutAccelerationWhateverTheFrame) {
   const auto arrival = [](const Vec3& frame) {
-    Stage stage(3, 2);
+    PuppetStage stage(3, 2);
     stage.setVelocity(0, Vec3(0, 1, 0) + frame), stage.setVelocity(1, Vec3(0.4, 0.8, 0) + frame);
     stage.puppet->run(makeChase(stage["right 0"], stage["middle 1"], {.duration_s = 0.5}));
     stage.stepUntil(0.5);
-    stage.puppet->update(Stage::kStep_s);
+    stage.puppet->update(PuppetStage::kStep_s);
     EXPECT_LT(stage.puppet->distance_m(stage["right 0"], stage["middle 1"]), 1e-9);
     return Vec3(stage.velocity("right 0") - frame);
   };
@@ -80,13 +80,13 @@ TEST(Chase, ArrivesByDefaultWithoutAccelerationWhateverTheFrame) {
 }
 
 TEST(Chase, EndsWithTheStepInWhichItsTimeIsOver) {
-  Stage stage(3, 2);
+  PuppetStage stage(3, 2);
   stage.setVelocity(1, Vec3(0, 0.7, 0));
   const BehaviourId chase =
       stage.puppet->run(makeChase(stage["right 0"], stage["left 1"], {.duration_s = 0.21}));
   stage.stepUntil(0.3, 0.05);
   EXPECT_FALSE(stage.puppet->running(chase));
-  Stage other(3, 2);
+  PuppetStage other(3, 2);
   other.setVelocity(1, Vec3(0, 0.7, 0));
   other.puppet->run(makeChase(other["right 0"], other["left 1"], {.duration_s = 0.21}));
   other.stepUntil(0.25, 0.05);
@@ -94,7 +94,7 @@ TEST(Chase, EndsWithTheStepInWhichItsTimeIsOver) {
 }
 
 TEST(Chase, KeepsOneConstraintAllTheWay) {
-  Stage stage(3, 2);
+  PuppetStage stage(3, 2);
   stage.puppet->run(makeChase(stage["right 0"], stage["left 1"], {.duration_s = 1}));
   stage.step();
   const int version = stage.system->constraintVersion();
@@ -103,7 +103,7 @@ TEST(Chase, KeepsOneConstraintAllTheWay) {
 }
 
 TEST(Chase, FailsWhenANewerControlTakesItsPoint) {
-  Stage stage(3, 2);
+  PuppetStage stage(3, 2);
   bool arrived = false;
   const auto id =
       stage.puppet->run(sequence(makeChase(stage["right 0"], stage["left 1"], {.duration_s = 0.5}),
@@ -116,7 +116,7 @@ TEST(Chase, FailsWhenANewerControlTakesItsPoint) {
 }
 
 TEST(Chase, LetsGoWhenCancelled) {
-  Stage stage(3, 2);
+  PuppetStage stage(3, 2);
   const auto id =
       stage.puppet->run(makeGrab(stage["right 0"], stage["left 1"], {.duration_s = 0.5}));
   stage.stepUntil(0.25);
@@ -132,11 +132,11 @@ TEST(Chase, LetsGoWhenCancelled) {
 
 TEST(Grab, TiesWhatItHasReached) {
   for (const BodyScheme scheme : kSchemes) {
-    Stage stage(2, 2, scheme, Vec3(0, -9.81, 0));
+    PuppetStage stage(2, 2, scheme, Vec3(0, -9.81, 0));
     stage.setVelocity(1, Vec3(0, 4, 0));
     stage.puppet->run(makeGrab(stage["right 0"], stage["left 1"], {.duration_s = 0.5}));
     stage.stepUntil(0.5, stepOf(scheme));
-    stage.puppet->update(Stage::kStep_s);
+    stage.puppet->update(PuppetStage::kStep_s);
     EXPECT_TRUE(stage.puppet->connected(stage["right 0"], stage["left 1"]));
     EXPECT_LT((stage.velocity("right 0") - stage.velocity("left 1")).norm(), 1e-9);
     stage.stepUntil(1, stepOf(scheme));
@@ -145,14 +145,14 @@ TEST(Grab, TiesWhatItHasReached) {
 }
 
 TEST(Grab, HangsItselfUpAtAPlace) {
-  Stage stage(2, 1, BodyScheme::implicitEuler, Vec3(0, -9.81, 0));
+  PuppetStage stage(2, 1, BodyScheme::implicitEuler, Vec3(0, -9.81, 0));
   stage.puppet->run(makeGrab(stage["left 0"], stage["post"], {.duration_s = 0.5}));
   stage.stepUntil(2);
   EXPECT_LT(stage.puppet->distance_m(stage["left 0"], stage["post"]), 1e-9);
 }
 
 TEST(Move, HoldsAtRestAndLetsGoInFlight) {
-  Stage stage(3, 2, BodyScheme::implicitEuler, Vec3(0, -9.81, 0));
+  PuppetStage stage(3, 2, BodyScheme::implicitEuler, Vec3(0, -9.81, 0));
   const Vec3 place(0.3, 0.5, 0.2);
   stage.puppet->run(
       parallel(makeMove(stage["left 0"], place, {.duration_s = 0.4}),
@@ -175,7 +175,7 @@ KeyframedPath somePath() {
 
 TEST(Follow, PrerollsFromPlaceAndVelocityToThePath) {
   for (const int dimension : {2, 3}) {
-    Stage stage(dimension, 1, BodyScheme::implicitEuler);
+    PuppetStage stage(dimension, 1, BodyScheme::implicitEuler);
     stage.setVelocity(0, Vec3(0, -1, 0));
     const Vec3 start = stage.position("left 0");
     const CubicSegment preroll(0, start, Vec3(0, -1, 0), 0.3, Vec3(0, 1, 0), Vec3(1, 0, 0));
@@ -190,19 +190,19 @@ TEST(Follow, PrerollsFromPlaceAndVelocityToThePath) {
 }
 
 TEST(Follow, MakesVelocityJumpsByImpulsesAndEndsBallistic) {
-  Stage stage(3, 1);
+  PuppetStage stage(3, 1);
   stage.puppet->run(makeFollow(stage["left 0"], somePath(), {.preroll_s = 0.25}));
   stage.stepUntil(0.75);
-  stage.puppet->update(Stage::kStep_s);
+  stage.puppet->update(PuppetStage::kStep_s);
   EXPECT_LT((stage.velocity("left 0") - Vec3(0, -1, 0)).norm(), 1e-9) << "after the jump";
   stage.stepUntil(1.25);
-  stage.puppet->update(Stage::kStep_s);
+  stage.puppet->update(PuppetStage::kStep_s);
   EXPECT_LT((stage.velocity("left 0") - Vec3(2, 0, 0)).norm(), 1e-9) << "out of the last key";
   EXPECT_FALSE(stage.puppet->controlled(stage["left 0"]));
 }
 
 TEST(Follow, LeavesThePointFreeUntilThePrerollBeforeItsOnset) {
-  Stage stage(3, 1);
+  PuppetStage stage(3, 1);
   stage.setVelocity(0, Vec3(0, -1, 0));
   stage.puppet->run(makeFollow(stage["left 0"], somePath(), {.preroll_s = 0.25, .onset_s = 1}));
   stage.stepUntil(0.75);
@@ -213,7 +213,7 @@ TEST(Follow, LeavesThePointFreeUntilThePrerollBeforeItsOnset) {
 }
 
 TEST(Follow, HoldsThePointWhereThePathEndsAtRest) {
-  Stage stage(3, 1, BodyScheme::implicitEuler, Vec3(0, -9.81, 0));
+  PuppetStage stage(3, 1, BodyScheme::implicitEuler, Vec3(0, -9.81, 0));
   const KeyframedPath path({{0, Vec3(0, 1, 0), {}, {}}, {0.5, Vec3(1, 1, 0), {}, {}}});
   const auto id = stage.puppet->run(makeFollow(stage["left 0"], path));
   stage.stepUntil(2);
@@ -222,7 +222,7 @@ TEST(Follow, HoldsThePointWhereThePathEndsAtRest) {
 }
 
 TEST(Follow, ClosesTheGapOfAPathThatItHasToJoinAtOnce) {
-  Stage stage(3, 1);
+  PuppetStage stage(3, 1);
   const KeyframedPath path({{0, Vec3(0, 1, 0), {}, {}}, {1, Vec3(1, 1, 0), {}, {}}});
   stage.puppet->run(makeFollow(stage["left 0"], path, {.preroll_s = 0}));
   Vec3 before = stage.position("left 0");
@@ -243,7 +243,7 @@ BehaviourPtr note(std::string& log, const char* what) {
 }
 
 TEST(Parallel, ActsInItsOrderAndWaitsForTheSlowest) {
-  Stage stage;
+  PuppetStage stage;
   std::string log;
   stage.puppet->run(sequence(parallel(sequence(makeWait(0.1), note(log, "a")), note(log, "b"),
                                       sequence(makeWait(0.1), note(log, "c"))),
@@ -255,7 +255,7 @@ TEST(Parallel, ActsInItsOrderAndWaitsForTheSlowest) {
 }
 
 TEST(Sequence, GoesOnWithinTheSameStep) {
-  Stage stage;
+  PuppetStage stage;
   double time = -1;
   stage.puppet->run(sequence(makeWait(0.25), makeHold(stage["left 0"]), makeStop(stage["left 0"]),
                              makeRelease(stage["left 0"]), makeWaitFor([&](const Puppet& puppet) {
@@ -267,7 +267,7 @@ TEST(Sequence, GoesOnWithinTheSameStep) {
 }
 
 TEST(WaitFor, GivesUpAfterItsTime) {
-  Stage stage;
+  PuppetStage stage;
   std::string log;
   const auto id = stage.puppet->run(
       sequence(makeWaitFor([](const Puppet&) { return false; }, 0.25), note(log, "a")));

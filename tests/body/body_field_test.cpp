@@ -49,12 +49,12 @@ struct OneBody {
   }
 };
 
-struct Value {
+struct FieldValue {
   double distance_m;
   Vec3 normal;
 };
 
-Value valueAt(const Field& field, const Vec3& p) {
+FieldValue valueAt(const Field& field, const Vec3& p) {
   const Eigen::Vector3f x = p.cast<float>();
   float d = 0, nx = 0, ny = 0, nz = 0;
   field.evaluate(SolidId(0), {&x.x(), &x.y(), &x.z(), 1}, &d, {&nx, &ny, &nz, 1});
@@ -101,7 +101,7 @@ TEST(BodyField, AffineEllipsoidHasItsExactSurfaceAndNormals) {
   for (int i = 0; i < 200; ++i) {
     const Vec3 u = randomIn(random, Vec3::Ones()).normalized();
     const Vec3 x = F * kHalf_m.cwiseProduct(u) + R.col(3);
-    const Value value = valueAt(body.field, x);
+    const FieldValue value = valueAt(body.field, x);
     EXPECT_NEAR(value.distance_m, 0, 1e-6);
     const Vec3 normal =
         (F.inverse().transpose() * u.cwiseQuotient(kHalf_m)).normalized();  // of |A x| = 1
@@ -140,7 +140,7 @@ TEST(BodyField, RigidMotionLeavesDistancesUnchanged) {
     Random random(6);
     for (int i = 0; i < 100; ++i) {
       const Vec3 X = randomIn(random, 1.4 * kHalf_m);
-      const Value rest = valueAt(before, X), moved = valueAt(body.field, place.point(X));
+      const FieldValue rest = valueAt(before, X), moved = valueAt(body.field, place.point(X));
       EXPECT_NEAR(moved.distance_m, rest.distance_m, 2e-6) << basis->name();
     }
     EXPECT_LT((body.field.frame(SolidId(0)).rotation - place.rotation).norm(), 1e-9);
@@ -232,7 +232,7 @@ TEST(BodyField, FlatBodiesArePlates) {
     const Transform place{Eigen::AngleAxisd(0.6, Vec3::UnitZ()).toRotationMatrix(), Vec3(1, 2, 0)};
     body.model.place(BodyId(0), place, body.state);
     body.update();
-    const Value above = valueAt(body.field, place.point(Vec3(0.1, 0.02, 0.05)));
+    const FieldValue above = valueAt(body.field, place.point(Vec3(0.1, 0.02, 0.05)));
     EXPECT_NEAR(above.distance_m, 0.02, 1e-6);
     EXPECT_LT((above.normal - Vec3::UnitZ()).norm(), 1e-5);
     EXPECT_NEAR(valueAt(body.field, place.point(Vec3(0.25, 0.02, 0.01))).distance_m, 0.05, 1e-6);
@@ -257,7 +257,7 @@ TEST(BodyField, BatchesEqualSinglePoints) {
   body.field.evaluate(SolidId(0), view(points, 0, kCount), distance_m.data(),
                       view(normals, 0, kCount));
   for (std::size_t i = 0; i < kCount; ++i) {
-    const Value one = valueAt(body.field, Vec3(points.x[i], points.y[i], points.z[i]));
+    const FieldValue one = valueAt(body.field, Vec3(points.x[i], points.y[i], points.z[i]));
     EXPECT_EQ(float(one.distance_m), distance_m[i]);
     EXPECT_EQ(float(one.normal.y()), normals.y[i]);
   }

@@ -7,12 +7,12 @@
 namespace fascia {
 namespace {
 
-struct Value {
+struct SurfaceValue {
   double distance_m;
   Vec3 normal;
 };
 
-Value valueAt(const BodySurface& surface, const Vec3& p) {
+SurfaceValue valueAt(const BodySurface& surface, const Vec3& p) {
   const Eigen::Vector3f x = p.cast<float>();
   float d = 0, nx = 0, ny = 0, nz = 0;
   surface.evaluate({&x.x(), &x.y(), &x.z(), 1}, &d, {&nx, &ny, &nz, 1});
@@ -42,7 +42,7 @@ void expectBoxDistances(const BodySurface& surface, const Vec3& half) {
   for (int i = 0; i < 400; ++i) {
     const Vec3 p = 1.7 * half.cwiseProduct(Vec3(random.uniform(-1, 1), random.uniform(-1, 1),
                                                 random.uniform(-1, 1)));
-    const Value value = valueAt(surface, p);
+    const SurfaceValue value = valueAt(surface, p);
     EXPECT_NEAR(value.distance_m, boxDistance(p, half), 1e-6);
     EXPECT_NEAR(value.normal.norm(), 1, 1e-5);
     // Back along the normal lies the surface.

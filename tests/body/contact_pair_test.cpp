@@ -15,11 +15,7 @@ using test::BoxKind;
 using test::BoxScene;
 using test::kFrame_s;
 
-constexpr double kEdge_m = 0.2;
-
-void advance(BodyStepper& stepper, BoxScene& scene, int frames) {
-  for (int i = 0; i < frames; ++i) stepper.step(kFrame_s, scene.state);
-}
+constexpr double kBoxEdge_m = 0.2;
 
 void stack(BoxScene& scene) {
   double top = 0.001;
@@ -73,7 +69,7 @@ TEST(BodyContact, AHeavyBoxRestsOnALightOne) {
   BodyStepper stepper(*scene.system);
   advance(stepper, scene, 240);
   EXPECT_GT(scene.lowest_m(), 0);
-  EXPECT_NEAR(scene.center(1).y(), 1.5 * kEdge_m, 0.02 * kEdge_m);
+  EXPECT_NEAR(scene.center(1).y(), 1.5 * kBoxEdge_m, 0.02 * kBoxEdge_m);
   EXPECT_LT(scene.velocity(1).norm(), 1e-3);
 }
 
@@ -102,7 +98,7 @@ TEST(BodyContact, FastBodiesDoNotPassThroughEachOther) {
   BoxScene scene({firm, firm}, {}, Vec3::Zero());
   scene.place(0, Vec3(-0.61, 0, 0)), scene.place(1, Vec3(0.57, 0.03, 0.02), 0.2);
   scene.setVelocity(0, Vec3(15, 0, 0)), scene.setVelocity(1, Vec3(-15, 0, 0));
-  const BodySurfacePtr box = makeMeshSurface(test::boxMesh(Vec3::Constant(kEdge_m)));
+  const BodySurfacePtr box = makeMeshSurface(test::boxMesh(Vec3::Constant(kBoxEdge_m)));
   BodyField field(scene.system->model(), std::vector{box, box});
   BodyStepper stepper(*scene.system);
   float nearest = 1;
@@ -137,7 +133,7 @@ TEST(BodyContact, BodiesThatAreTiedDoNotCollide) {
   EXPECT_NEAR(scene.center(1).x(), 0.15, 1e-9);
   scene.contacts->collidePair(BodyId(0), BodyId(1));
   advance(stepper, scene, 60);
-  EXPECT_GT(scene.center(1).x() - scene.center(0).x(), kEdge_m);
+  EXPECT_GT(scene.center(1).x() - scene.center(0).x(), kBoxEdge_m);
 }
 
 TEST(BodyContact, KeepsConstraintsWhileBodiesTouch) {

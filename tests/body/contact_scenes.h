@@ -153,4 +153,8 @@ class MovingSolid final : public Field {
   Solid solid_;
 };
 
+inline void advance(BodyStepper& stepper, BoxScene& scene, int frames) {
+  for (int i = 0; i < frames; ++i) stepper.step(kFrame_s, scene.state);
+}
+
 }  // namespace fascia::test

@@ -18,10 +18,6 @@ Vec3 slope(double angle) {
   return 9.81 * Vec3(std::sin(angle), -std::cos(angle), 0);
 }
 
-void advance(BodyStepper& stepper, BoxScene& scene, int frames) {
-  for (int i = 0; i < frames; ++i) stepper.step(kFrame_s, scene.state);
-}
-
 TEST(Contact, ABoxRestsOnTheGroundForTenSeconds) {
   BoxScene scene({{}}, {.ground_m = 0});
   scene.place(0, Vec3(0, 0.5 * kEdge_m + kMargin_m, 0));

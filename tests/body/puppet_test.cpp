@@ -7,7 +7,7 @@
 namespace fascia {
 namespace {
 
-using test::Stage;
+using test::PuppetStage;
 
 std::string errorOf(const std::function<void()>& act) {
   try {
@@ -19,7 +19,7 @@ std::string errorOf(const std::function<void()>& act) {
 }
 
 TEST(Puppet, FindsPointsByNameAndSuggestsTheNearest) {
-  Stage stage;
+  PuppetStage stage;
   EXPECT_EQ(stage.puppet->name(stage["right 1"]), "right 1");
   const std::string said = errorOf([&] { stage.puppet->find("rihgt 1"); });
   EXPECT_NE(said.find("no point is named 'rihgt 1'"), std::string::npos) << said;
@@ -27,7 +27,7 @@ TEST(Puppet, FindsPointsByNameAndSuggestsTheNearest) {
 }
 
 TEST(Puppet, RefusesPointsWithoutNameBodyOrSense) {
-  Stage stage;
+  PuppetStage stage;
   const auto make = [&](const std::vector<NamedPoint>& points) {
     return errorOf([&] { Puppet puppet(*stage.system, stage.state, points); });
   };
@@ -41,7 +41,7 @@ TEST(Puppet, RefusesPointsWithoutNameBodyOrSense) {
 
 TEST(Puppet, TellsPlaceAndVelocityOfAllKindsOfPoints) {
   for (const int dimension : {2, 3}) {
-    Stage stage(dimension);
+    PuppetStage stage(dimension);
     stage.setVelocity(1, Vec3(0, 2, 0));
     stage.state.t_s = 2;
     EXPECT_LT((stage.position("right 1") - Vec3(1.2, 0, 0)).norm(), 1e-12);
@@ -58,7 +58,7 @@ TEST(Puppet, TellsPlaceAndVelocityOfAllKindsOfPoints) {
 TEST(Puppet, HoldsAPointAgainstGravityAndLetsItFallByTheClosedForm) {
   for (const int dimension : {2, 3}) {
     const Vec3 g(0, -9.81, 0);
-    Stage stage(dimension, 1, BodyScheme::energyConserving, g);
+    PuppetStage stage(dimension, 1, BodyScheme::energyConserving, g);
     stage.setVelocity(0, Vec3(1, 0, 0));
     stage.puppet->hold(stage["middle 0"]);
     EXPECT_LT(stage.velocity("middle 0").norm(), 1e-12);
@@ -74,8 +74,8 @@ TEST(Puppet, HoldsAPointAgainstGravityAndLetsItFallByTheClosedForm) {
 }
 
 TEST(Puppet, ReplacesAnOlderControlOfAPointByTheNewer) {
-  Stage stage;
-  const auto first = stage.puppet->lead(stage["left 0"], &Stage::cart);
+  PuppetStage stage;
+  const auto first = stage.puppet->lead(stage["left 0"], &PuppetStage::cart);
   stage.puppet->hold(stage["left 0"]);
   EXPECT_FALSE(stage.puppet->leads(first));
   EXPECT_TRUE(stage.puppet->controlled(stage["left 0"]));
@@ -85,7 +85,7 @@ TEST(Puppet, ReplacesAnOlderControlOfAPointByTheNewer) {
 }
 
 TEST(Puppet, KnowsAPointUnderTwoNames) {
-  Stage stage;
+  PuppetStage stage;
   Puppet puppet(
       *stage.system, stage.state,
       {{"a", BodyPoint{BodyId(0), Vec3::UnitX()}}, {"b", BodyPoint{BodyId(0), Vec3::UnitX()}}});
@@ -97,7 +97,7 @@ TEST(Puppet, KnowsAPointUnderTwoNames) {
 
 TEST(Puppet, ConnectsMovingBodiesWithoutAJumpAndKeepsTheirMomentum) {
   for (const int dimension : {2, 3}) {
-    Stage stage(dimension);
+    PuppetStage stage(dimension);
     stage.setVelocity(0, Vec3(2, 1, 0)), stage.setVelocity(1, Vec3(-1, 0, 0));
     const Vec3 momentum = stage.system->model().momentum_Ns(stage.state.v);
     const double distance = stage.puppet->distance_m(stage["right 0"], stage["left 1"]);
@@ -109,7 +109,7 @@ TEST(Puppet, ConnectsMovingBodiesWithoutAJumpAndKeepsTheirMomentum) {
       stage.step();
       const double now = stage.puppet->distance_m(stage["right 0"], stage["left 1"]);
       EXPECT_LT(now, last);
-      EXPECT_GT(now, last - 2 * distance * Stage::kStep_s / Puppet::kClosing_s) << "a jump";
+      EXPECT_GT(now, last - 2 * distance * PuppetStage::kStep_s / Puppet::kClosing_s) << "a jump";
       last = std::max(now, 1e-15);
     }
     EXPECT_LT(last, 1e-12);
@@ -121,7 +121,7 @@ TEST(Puppet, ConnectsMovingBodiesWithoutAJumpAndKeepsTheirMomentum) {
 }
 
 TEST(Puppet, NailsAPointToAPlaceThatMoves) {
-  Stage stage;
+  PuppetStage stage;
   stage.puppet->connect(stage["left 0"], stage["cart"]);
   stage.stepUntil(0.5);
   EXPECT_LT((stage.position("left 0") - stage.position("cart")).norm(), 1e-12);
@@ -129,9 +129,9 @@ TEST(Puppet, NailsAPointToAPlaceThatMoves) {
 }
 
 TEST(Puppet, StopsAPointDeadAndLetsItGo) {
-  Stage stage;
+  PuppetStage stage;
   stage.setVelocity(0, Vec3(1, 2, 0));
-  stage.puppet->lead(stage["left 0"], &Stage::cart);
+  stage.puppet->lead(stage["left 0"], &PuppetStage::cart);
   stage.puppet->stop(stage["left 0"]);
   EXPECT_LT(stage.velocity("left 0").norm(), 1e-12);
   EXPECT_GT(stage.velocity("right 0").norm(), 0.1);
@@ -141,7 +141,7 @@ TEST(Puppet, StopsAPointDeadAndLetsItGo) {
 TEST(Puppet, GivesThePushedBodyItsImpulseWhateverTheStep) {
   const Vec3 force(3, -1, 0);
   for (const double h : {1.0 / 60, 0.037, 0.5}) {
-    Stage stage(3, 1);
+    PuppetStage stage(3, 1);
     stage.puppet->push(stage["middle 0"], force, 0.1);
     EXPECT_EQ(stage.puppet->pushCount(), 1u);
     stage.stepUntil(1, h);
@@ -152,7 +152,7 @@ TEST(Puppet, GivesThePushedBodyItsImpulseWhateverTheStep) {
 }
 
 TEST(Puppet, LeavesForcesOfOthersAlone) {
-  Stage stage(3, 1);
+  PuppetStage stage(3, 1);
   stage.system->addPointForce({BodyId(0), Vec3::Zero()}, Vec3(0, 2, 0));
   stage.puppet->push(stage["middle 0"], Vec3(1, 0, 0), 0.1);
   stage.stepUntil(0.5);
@@ -162,7 +162,7 @@ TEST(Puppet, LeavesForcesOfOthersAlone) {
 
 TEST(Puppet, PullsAPointAfterATargetThatIsSetEveryFrame) {
   for (const int dimension : {2, 3}) {
-    Stage stage(dimension, 1);
+    PuppetStage stage(dimension, 1);
     stage.puppet->pull(stage["middle 0"], Vec3(0, 0, 0), 200, 40);
     const int version = stage.system->constraintVersion();
     for (int i = 0; i < 120; ++i) {
@@ -180,14 +180,14 @@ TEST(Puppet, PullsAPointAfterATargetThatIsSetEveryFrame) {
 }
 
 TEST(Puppet, PullsPointsTogether) {
-  Stage stage;
+  PuppetStage stage;
   stage.puppet->pull(stage["right 0"], stage["left 1"], 100, 10);
   for (int i = 0; i < 600; ++i) stage.step();
   EXPECT_LT(stage.puppet->distance_m(stage["right 0"], stage["left 1"]), 0.01);
 }
 
 TEST(Puppet, RefusesToControlPlaces) {
-  Stage stage;
+  PuppetStage stage;
   const std::string said = errorOf([&] { stage.puppet->hold(stage["post"]); });
   EXPECT_NE(said.find("'post' is a place"), std::string::npos) << said;
   EXPECT_THROW(stage.puppet->connect(stage["cart"], stage["left 0"]), Error);

@@ -11,11 +11,12 @@ namespace fascia::test {
 
 // Bars that float apart in a row along x, 1 m each, with strings on them: bar i has the points
 // "left i", "middle i" and "right i". There are a place "post" and a place "cart" that moves.
-struct Stage {
+struct PuppetStage {
   static constexpr double kStep_s = 1.0 / 60;
 
-  explicit Stage(int dimension = 3, int bars = 2, BodyScheme scheme = BodyScheme::implicitEuler,
-                 const Vec3& gravity = Vec3::Zero()) {
+  explicit PuppetStage(int dimension = 3, int bars = 2,
+                       BodyScheme scheme = BodyScheme::implicitEuler,
+                       const Vec3& gravity = Vec3::Zero()) {
     BodyModel model;
     const auto bar = makeBar(makeAffineBasis(dimension), {.rigidity_Pa = 1e5, .volume_Pa = 1e5},
                              kBarSize_m, 100);
@@ -24,7 +25,7 @@ struct Stage {
         std::make_unique<BodySystem>(std::move(model), BodySettings{.gravity_m_per_s2 = gravity});
     state = system->model().restState();
     std::vector<NamedPoint> points{{"post", Vec3(0.5, 1, dimension == 3 ? 0.2 : 7)},
-                                   {"cart", PointPath(&Stage::cart)}};
+                                   {"cart", PointPath(&PuppetStage::cart)}};
     for (int i = 0; i < bars; ++i) {
       system->model().place(BodyId(i), {Mat3::Identity(), Vec3(i, 0, 0)}, state);
       const std::string number = " " + std::to_string(i);

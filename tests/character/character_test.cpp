@@ -9,14 +9,13 @@
 namespace fascia {
 namespace {
 
+using test::faults;
+using test::hashAfter;
+
 CharacterState run(const Character& character, int frames, CharacterState state) {
   SkinStats stats;
   for (int f = 0; f < frames; ++f) advance(character, 0, 1.0 / 60, state, stats);
   return state;
-}
-
-std::uint64_t hashAfter(const Character& character, int frames) {
-  return hashOf(character, run(character, frames, initialState(character, 0)));
 }
 
 TEST(Determinism, SameBitsOnAnyNumberOfThreads) {
@@ -144,16 +143,6 @@ TEST(Resolution, CanChangeAtAnyMomentOfARun) {
   EXPECT_LE(stats.max_penetration_m, 1e-4);
   EXPECT_EQ(stats.repaired_points, 0u);
   EXPECT_LT(stats.max_edge_stretch, 4);
-}
-
-std::vector<std::string> faults(const CharacterDef& def, const BuildOptions& options = {}) {
-  std::vector<std::string> pointers;
-  try {
-    const Character character(def, options);
-  } catch (const Error& error) {
-    for (const Issue& issue : error.issues()) pointers.push_back(issue.where.pointer);
-  }
-  return pointers;
 }
 
 TEST(CharacterFaults, OfTheSimulationAreNamedByTheirPointerAllAtOnce) {

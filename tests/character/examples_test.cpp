@@ -13,6 +13,8 @@
 namespace fascia {
 namespace {
 
+using test::hashAfter;
+
 std::vector<std::string> exampleFiles() {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(FASCIA_SOURCE_DIR "/examples"))
@@ -39,13 +41,6 @@ class Examples : public testing::TestWithParam<std::string> {
     return loadCharacter(GetParam(), options);
   }
 };
-
-std::uint64_t hashAfter(const Character& character, int frames) {
-  CharacterState state = initialState(character, 0);
-  SkinStats stats;
-  for (int f = 0; f < frames; ++f) advance(character, 0, 1.0 / 60, state, stats);
-  return hashOf(character, state);
-}
 
 TEST_P(Examples, HaveTheSameBitsOnAnyNumberOfThreads) {
   for (const int side : {24, 72}) {

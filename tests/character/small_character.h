@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
+#include <vector>
 
+#include <fascia/base/error.h>
 #include <fascia/character/character.h>
 
 namespace fascia::test {
@@ -142,6 +145,24 @@ inline Worst simulate(const Character& character, int motion, double frame_s, in
   worst.penetration_m = worst.stats.max_penetration_m;
   worst.stretch = worst.stats.max_edge_stretch;
   return worst;
+}
+
+inline std::uint64_t hashAfter(const Character& character, int frames) {
+  CharacterState state = initialState(character, 0);
+  SkinStats stats;
+  for (int f = 0; f < frames; ++f) advance(character, 0, 1.0 / 60, state, stats);
+  return hashOf(character, state);
+}
+
+// Where building finds something wrong.
+inline std::vector<std::string> faults(const CharacterDef& def, const BuildOptions& options = {}) {
+  std::vector<std::string> pointers;
+  try {
+    const Character character(def, options);
+  } catch (const Error& error) {
+    for (const Issue& issue : error.issues()) pointers.push_back(issue.where.pointer);
+  }
+  return pointers;
 }
 
 }  // namespace fascia::test

@@ -11,6 +11,8 @@
 namespace fascia {
 namespace {
 
+using test::faults;
+
 constexpr double kGravity = 9.81;
 constexpr double kFrame_s = 1.0 / 60;
 
@@ -47,16 +49,6 @@ double speed(const CharacterState& state) {
   double sum = 0;
   for (const double v : state.bodies.v) sum += v * v;
   return std::sqrt(sum);
-}
-
-std::vector<std::string> faults(const CharacterDef& def) {
-  std::vector<std::string> pointers;
-  try {
-    const Character character(def);
-  } catch (const Error& e) {
-    for (const Issue& issue : e.issues()) pointers.push_back(issue.where.pointer);
-  }
-  return pointers;
 }
 
 // Held in a plane, an affine body can shear and stretch off that plane only: x = X + a w(X) with

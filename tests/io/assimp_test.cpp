@@ -12,6 +12,7 @@
 #include <fascia/io/rig_import.h>
 #include <fascia/io/rig_to_gltf.h>
 
+#include "programs.h"
 #include "rig_checks.h"
 #include "sample.h"
 #include "support/assets.h"
@@ -19,24 +20,19 @@
 namespace fascia {
 namespace {
 
+using test::expectSuccess;
+
 void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-std::string errorOf(const std::string& path) {
+std::string importErrorOf(const std::string& path) {
   try {
     readRiggedModel(path);
   } catch (const Error& error) {
     return error.what();
   }
   return "no error";
-}
-
-void expectSuccess(const std::string& program, const std::vector<std::string>& arguments) {
-  std::optional<ChildProcess> process = ChildProcess::start(program, arguments);
-  ASSERT_TRUE(process.has_value());
-  const bool good = process->finish();
-  EXPECT_TRUE(good) << process->complaints();
 }
 
 // The tube with a picture, and a motion that bends it.
@@ -241,20 +237,20 @@ TEST(Assimp, ReadsBonesWeightsAndMotions) {
 TEST(Assimp, SaysThatASurfaceWithoutBonesNeedsARig) {
   const sample::Folder folder;
   write(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_THAT(errorOf(folder / "a.obj"), testing::HasSubstr("needs a rig"));
+  EXPECT_THAT(importErrorOf(folder / "a.obj"), testing::HasSubstr("needs a rig"));
   write(folder / "a.stl",
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
         "endloop\nendfacet\nendsolid a\n");
-  EXPECT_THAT(errorOf(folder / "a.stl"), testing::HasSubstr("needs a rig"));
+  EXPECT_THAT(importErrorOf(folder / "a.stl"), testing::HasSubstr("needs a rig"));
 }
 
 TEST(Assimp, TellsWhatCannotBeRead) {
   const sample::Folder folder;
-  EXPECT_THAT(errorOf(folder / "none.fbx"), testing::HasSubstr("none.fbx: cannot be read"));
-  EXPECT_THAT(errorOf(folder / "none.abc"), testing::HasSubstr("has the ending \".abc\""));
+  EXPECT_THAT(importErrorOf(folder / "none.fbx"), testing::HasSubstr("none.fbx: cannot be read"));
+  EXPECT_THAT(importErrorOf(folder / "none.abc"), testing::HasSubstr("has the ending \".abc\""));
   for (const char* name : {"a.fbx", "a.dae", "a.blend", "a.x", "a.b3d", "a.ms3d", "a.mdl"}) {
     write(folder / name, "Kaydara FBX Binary  \x1a junk \xff\xff\xff\xff\xff\xff\xff\xff\xff");
-    EXPECT_NE(errorOf(folder / name), "no error") << name;
+    EXPECT_NE(importErrorOf(folder / name), "no error") << name;
   }
 }
 
@@ -263,7 +259,7 @@ TEST(Assimp, SurvivesTruncatedFiles) {
   const std::string text = kSmd;
   for (std::size_t size = 0; size < text.size(); size += 61) {
     write(folder / "cut.smd", text.substr(0, size));
-    errorOf(folder / "cut.smd");  // no crash: an error, or what there is
+    importErrorOf(folder / "cut.smd");  // no crash: an error, or what there is
   }
 }
 

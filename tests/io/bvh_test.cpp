@@ -12,9 +12,12 @@
 #include <fascia/rig/retarget.h>
 
 #include "support/assets.h"
+#include "support/replaced.h"
 
 namespace fascia {
 namespace {
+
+using test::replaced;
 
 const std::string kArm = R"(HIERARCHY
 ROOT Hips
@@ -37,18 +40,13 @@ Frame Time: 0.05
 4 5 6 0 0 0 +30 60
 )";
 
-std::string errorOf(const std::string& text) {
+std::string parseErrorOf(const std::string& text) {
   try {
     parseBvh(text, "a.bvh");
   } catch (const Error& error) {
     return error.what();
   }
   return "no error";
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  text.replace(text.find(what), what.size(), with);
-  return text;
 }
 
 TEST(Bvh, ReadsJointsChannelsAndFrames) {
@@ -91,21 +89,22 @@ TEST(Bvh, AcceptsOtherLineEndsCasesAndTightBraces) {
 }
 
 TEST(Bvh, SaysWhereWhatWasFoundAndExpected) {
-  EXPECT_EQ(errorOf(""), "a.bvh:1: the file ends, expected HIERARCHY");
-  EXPECT_EQ(errorOf("glTF"), "a.bvh:1: found 'glTF', expected HIERARCHY");
-  EXPECT_EQ(errorOf(replaced(kArm, "2 Y", "2 W")),
+  EXPECT_EQ(parseErrorOf(""), "a.bvh:1: the file ends, expected HIERARCHY");
+  EXPECT_EQ(parseErrorOf("glTF"), "a.bvh:1: found 'glTF', expected HIERARCHY");
+  EXPECT_EQ(parseErrorOf(replaced(kArm, "2 Y", "2 W")),
             "a.bvh:8: found 'Wrotation', expected Xposition, Yposition, Zposition, Xrotation, "
             "Yrotation or Zrotation");
-  EXPECT_EQ(errorOf(replaced(kArm, "2 Yrotation", "2 Xrotation")),
+  EXPECT_EQ(parseErrorOf(replaced(kArm, "2 Yrotation", "2 Xrotation")),
             "a.bvh:8: found 'Xrotation' twice in 'Left Arm'");
-  EXPECT_EQ(errorOf(replaced(kArm, "1 2 3\n", "1 2 nan\n")),
+  EXPECT_EQ(parseErrorOf(replaced(kArm, "1 2 3\n", "1 2 nan\n")),
             "a.bvh:7: found 'nan', expected a length");
-  EXPECT_EQ(errorOf(replaced(kArm, "0.05", "0")),
+  EXPECT_EQ(parseErrorOf(replaced(kArm, "0.05", "0")),
             "a.bvh:17: found a frame time of 0, expected seconds in (0, 1000]");
-  EXPECT_EQ(errorOf(replaced(kArm, "+30 60", "+30")),
+  EXPECT_EQ(parseErrorOf(replaced(kArm, "+30 60", "+30")),
             "a.bvh:20: the last frame has 7 values, expected 8");
-  EXPECT_EQ(errorOf(replaced(kArm, "+30", "1e99")), "a.bvh:19: found '1e99', expected a number");
-  EXPECT_EQ(errorOf(replaced(kArm, "MOTION", "ROOT b { }\nMOTION")),
+  EXPECT_EQ(parseErrorOf(replaced(kArm, "+30", "1e99")),
+            "a.bvh:19: found '1e99', expected a number");
+  EXPECT_EQ(parseErrorOf(replaced(kArm, "MOTION", "ROOT b { }\nMOTION")),
             "a.bvh:15: found a second ROOT, expected MOTION (keep one figure in the file)");
 }
 
@@ -120,11 +119,12 @@ TEST(Bvh, MendsDoubleNamesAndWrongCountsAndSaysSo) {
 }
 
 TEST(Bvh, SurvivesEveryTruncationAndDeepNesting) {
-  for (std::size_t size = 0; size < kArm.size(); ++size) errorOf(kArm.substr(0, size));
+  for (std::size_t size = 0; size < kArm.size(); ++size) parseErrorOf(kArm.substr(0, size));
   std::string deep = "HIERARCHY ROOT a\n{\n";
   for (int k = 0; k < 100000; ++k) deep += "JOINT b\n{\n";
-  EXPECT_THAT(errorOf(deep), testing::HasSubstr("more than 4096 joints"));
-  EXPECT_THAT(errorOf(replaced(kArm, "Frames: 2", "Frames: 18446744073709551615")), "no error");
+  EXPECT_THAT(parseErrorOf(deep), testing::HasSubstr("more than 4096 joints"));
+  EXPECT_THAT(parseErrorOf(replaced(kArm, "Frames: 2", "Frames: 18446744073709551615")),
+              "no error");
 }
 
 TEST(Bvh, GuessesTheUnitFromAPersonsHeight) {

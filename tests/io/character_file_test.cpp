@@ -8,19 +8,14 @@
 #include <fascia/io/file.h>
 
 #include "sample.h"
+#include "support/replaced.h"
 
 namespace fascia {
 namespace {
 
 using sample::faults;
+using test::replaced;
 using testing::HasSubstr;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  if (at != std::string::npos) text.replace(at, from.size(), to);
-  return text;
-}
 
 struct BadInput {
   const char* name;

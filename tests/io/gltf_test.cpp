@@ -12,10 +12,13 @@
 #include <fascia/io/gltf_writer.h>
 #include <fascia/io/keep_frames.h>
 
+#include "programs.h"
 #include "sample.h"
 
 namespace fascia {
 namespace {
+
+using test::expectSuccess;
 
 // The arm of the sample without its skin, which is not simulated here: the recording brings one.
 Character armWithoutSkin() {
@@ -200,13 +203,6 @@ TEST(Glb, BadRecordingsLeaveNoFile) {
 }
 
 // Runs a program on files made here; its complaints are the test's.
-void expectSuccess(const std::string& program, const std::vector<std::string>& arguments) {
-  std::optional<ChildProcess> process = ChildProcess::start(program, arguments);
-  ASSERT_TRUE(process.has_value());
-  const bool good = process->finish();
-  EXPECT_TRUE(good) << process->complaints();
-}
-
 TEST(Glb, KhronosValidatorFindsNothing) {
   const char* module = std::getenv("GLTF_VALIDATOR");
   if (!module || findProgram("node").empty()) {

@@ -15,11 +15,14 @@
 #include <fascia/rig/linear_blend.h>
 
 #include "gltf_sample.h"
+#include "programs.h"
 #include "sample.h"
 #include "support/assets.h"
 
 namespace fascia {
 namespace {
+
+using test::expectSuccess;
 
 // Where a point is in the bind pose at a time, in the place of the rest.
 using Bulge = std::function<Eigen::Vector3f(const Eigen::Vector3f& rest, double time_s)>;
@@ -419,13 +422,6 @@ TEST(RigWriter, BadInputLeavesNoFile) {
 }
 
 // Runs a program on files made here; its complaints are the test's.
-void expectSuccess(const std::string& program, const std::vector<std::string>& arguments) {
-  std::optional<ChildProcess> process = ChildProcess::start(program, arguments);
-  ASSERT_TRUE(process.has_value());
-  const bool good = process->finish();
-  EXPECT_TRUE(good) << process->complaints();
-}
-
 // Everywhere a little, as flesh does.
 Eigen::Vector3f breathing(const Eigen::Vector3f& p, double time_s) {
   const auto s = static_cast<float>(0.01 * std::sin(9 * time_s + 5 * static_cast<double>(p.z())));

@@ -11,20 +11,15 @@
 
 #include "sample.h"
 #include "scene_sample.h"
+#include "support/replaced.h"
 
 namespace fascia {
 namespace {
 
+using test::replaced;
 using OrderedJson = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  if (at != std::string::npos) text.replace(at, from.size(), to);
-  return text;
-}
 
 // Runs something that reads; what it finds wrong.
 template <class Read>

@@ -12,10 +12,13 @@
 #include <fascia/io/scene_gltf.h>
 
 #include "character/small_character.h"
+#include "programs.h"
 #include "sample.h"
 
 namespace fascia {
 namespace {
+
+using test::expectSuccess;
 
 constexpr double kFrameRate_hz = 30;
 
@@ -361,13 +364,6 @@ TEST(SceneGlb, StillScenesHaveNoAnimationAndBadRecordingsLeaveNoFile) {
 }
 
 // Runs a program on files made here; its complaints are the test's.
-void expectSuccess(const std::string& program, const std::vector<std::string>& arguments) {
-  std::optional<ChildProcess> process = ChildProcess::start(program, arguments);
-  ASSERT_TRUE(process.has_value());
-  const bool good = process->finish();
-  EXPECT_TRUE(good) << process->complaints();
-}
-
 TEST(SceneGlb, KhronosValidatorFindsNothing) {
   const char* module = std::getenv("GLTF_VALIDATOR");
   if (!module || findProgram("node").empty()) {

@@ -7,8 +7,12 @@
 #include <fascia/motion/clip.h>
 #include <gtest/gtest.h>
 
+#include "keys.h"
+
 namespace fascia {
 namespace {
+
+using test::key;
 
 constexpr double kSmall_s = 1e-6;
 
@@ -20,10 +24,6 @@ double rateAfter(const KeySpline& s, double t) {
 double rateBefore(const KeySpline& s, double t) {
   const double h = kSmall_s;
   return (3 * s.at(t).value - 4 * s.at(t - h).value + s.at(t - 2 * h).value) / (2 * h);
-}
-
-Key key(double time_s, double value) {
-  return {time_s, value, 0, 0, 0};
 }
 
 std::vector<Key> randomKeys(std::uint64_t seed, double continuity) {

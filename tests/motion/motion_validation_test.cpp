@@ -5,19 +5,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "keys.h"
+
 namespace fascia {
 namespace {
 
+using test::key;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Key key(double time_s, double value) {
-  return {time_s, value, 0, 0, 0};
-}
 
 MotionDef goodMotion() {
   MotionDef motion;

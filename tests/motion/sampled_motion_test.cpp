@@ -160,9 +160,9 @@ TEST(SampledMotion, OfOneFrameIsAPose) {
 }
 
 TEST(SampledMotion, ReadsATimeThatIsNoNumberAsTheStart) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const bool loop : {false, true})
-    for (const double time : {std::nan(""), kInfinity, -kInfinity})
+    for (const double time : {std::nan(""), infinity, -infinity})
       EXPECT_EQ(placeAt(walk(loop), time), 1);
 }
 

@@ -146,10 +146,10 @@ TEST(NearestName, FindsSlipsButNotStrangers) {
 }
 
 TEST(Quoted, MakesHostileNamesHarmless) {
-  EXPECT_EQ(quoted("arm"), "'arm'");
-  EXPECT_EQ(quoted("a\x1b[31m\n"), "'a?[31m?'");
+  EXPECT_EQ(quotedName("arm"), "'arm'");
+  EXPECT_EQ(quotedName("a\x1b[31m\n"), "'a?[31m?'");
   const std::string longName(100000, 'x');
-  EXPECT_LT(quoted(std::string_view(longName)).size(), 80u);
+  EXPECT_LT(quotedName(std::string_view(longName)).size(), 80u);
 }
 
 }  // namespace

@@ -7,15 +7,16 @@
 namespace fascia {
 namespace {
 
-constexpr double kWidth_m = 1.2, kHeight_m = 0.8, kArea_m2 = kWidth_m * kHeight_m;
+constexpr double kSheetWidth_m = 1.2, kSheetHeight_m = 0.8,
+                 kArea_m2 = kSheetWidth_m * kSheetHeight_m;
 
 ElasticGrid flatSheet(const GridLayout& g, double maxStretch) {
-  return {g, test::sheet(g, kWidth_m, kHeight_m),
+  return {g, test::sheet(g, kSheetWidth_m, kSheetHeight_m),
           test::uniformMaterial(g, 150, 70, 40, 1, maxStretch)};
 }
 
 VectorArray strained(const GridLayout& g, double stretchX, double stretchY, double shear) {
-  VectorArray r = test::sheet(g, kWidth_m, kHeight_m);
+  VectorArray r = test::sheet(g, kSheetWidth_m, kSheetHeight_m);
   test::forEachPoint(g, [&](int, int, std::size_t k) {
     const Vec3 p = test::at(r, k);
     test::put(r, k, Vec3(stretchX * p.x() + shear * p.y(), stretchY * p.y(), 0));
@@ -57,7 +58,7 @@ TEST(ElasticEnergy, GrowsLinearlyWithStrainBeyondThePlateau) {
 TEST(ElasticEnergy, IsLeastAtTheRelaxedLengths) {
   const GridLayout g{16, 8, false};
   const double prestretch = 1.25;
-  const ElasticGrid elastic(g, test::sheet(g, kWidth_m, kHeight_m),
+  const ElasticGrid elastic(g, test::sheet(g, kSheetWidth_m, kSheetHeight_m),
                             test::uniformMaterial(g, 150, 70, 40, prestretch, 2));
   const double relaxed = 1 / prestretch;
   EXPECT_NEAR(elastic.energy(strained(g, relaxed, relaxed, 0)), 0, 1e-9);

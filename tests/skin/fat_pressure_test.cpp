@@ -7,20 +7,17 @@
 #include <fascia/base/random.h>
 #include <fascia/math/types.h>
 
+#include "grids.h"
+
 namespace fascia {
 namespace {
 
-constexpr double kRadius_m = 0.1, kFat_m = 0.01, kDensity_kg_per_m2 = 4;
-constexpr double kInterval_s = 1.0 / 60;
-constexpr int kSteps = 8;
+using test::at;
+using test::put;
 
-Vec3 at(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
-void put(VectorArray& a, std::size_t k, const Vec3& p) {
-  a.x[k] = static_cast<float>(p.x()), a.y[k] = static_cast<float>(p.y());
-  a.z[k] = static_cast<float>(p.z());
-}
+constexpr double kBall_m = 0.1, kFat_m = 0.01, kBallDensity_kg_per_m2 = 4;
+constexpr double kFrame_s = 1.0 / 60;
+constexpr int kStepsOfFrame = 8;
 
 // A round skin over one solid: points on strands, held together by their fat alone.
 struct Ball {
@@ -34,7 +31,7 @@ struct Ball {
   double tissue_N_per_m3, drag_per_s;
 
   Ball(double bulk_Pa, double tissue, double drag) : tissue_N_per_m3(tissue), drag_per_s(drag) {
-    for (std::size_t k = 0; k < kCount; ++k) put(rest, k, kRadius_m * direction(k));
+    for (std::size_t k = 0; k < kCount; ++k) put(rest, k, kBall_m * direction(k));
     for (std::uint32_t j = 0; j < kAround; ++j) {
       triangles.push_back({0, ring(0, j), ring(0, j + 1)});
       triangles.push_back({1, ring(kRings - 1, j + 1), ring(kRings - 1, j)});
@@ -46,11 +43,11 @@ struct Ball {
     for (std::size_t k = 0; k < kCount; ++k)
       put(anchor, k, at(rest, k) + Vec3(0, 0.002, 0));  // as a strand that carries weight has it
     // Every point has the same share of the surface: what it weighs does not matter here.
-    const double area = 4 * kPi * kRadius_m * kRadius_m / kCount;
-    points.mass.assign(kCount, static_cast<float>(kDensity_kg_per_m2 * area));
+    const double area = 4 * kPi * kBall_m * kBall_m / kCount;
+    points.mass.assign(kCount, static_cast<float>(kBallDensity_kg_per_m2 * area));
     points.tissueStiffness.assign(kCount, static_cast<float>(tissue * area));
     points.free.assign(kCount, 1.f);
-    step.step_s = static_cast<float>(kInterval_s / kSteps);
+    step.step_s = static_cast<float>(kFrame_s / kStepsOfFrame);
     step.gain.assign(kCount, step.step_s / points.mass[0]);
     around.resize(kCount);
     around.anchor = anchor;
@@ -77,7 +74,7 @@ struct Ball {
     return six / 6;
   }
   const VectorArray& press(FatPressure& fat) {
-    return fat.press(step, around, kInterval_s, position, velocity);
+    return fat.press(step, around, kFrame_s, position, velocity);
   }
   // `hold` puts points where they are held, after every step.
   template <class Hold>
@@ -85,7 +82,7 @@ struct Ball {
     const VectorArray none(kCount);
     const VectorArray& force = fat ? press(*fat) : none;
     const double h = double{step.step_s}, keep = std::exp(-h * drag_per_s);
-    for (int s = 0; s < kSteps; ++s) {
+    for (int s = 0; s < kStepsOfFrame; ++s) {
       for (std::size_t k = 0; k < kCount; ++k) {
         const Vec3 strand = at(position, k) - at(rest, k);
         const double stiffness = double{points.tissueStiffness[k]};
@@ -101,7 +98,7 @@ struct Ball {
 TEST(FatPressure, LeavesRestAloneBitForBit) {
   Ball ball(1e5, 4000, 0);
   ASSERT_EQ(ball.model.layers.size(), 1u);
-  const double surface = 4 * kPi * kRadius_m * kRadius_m;
+  const double surface = 4 * kPi * kBall_m * kBall_m;
   EXPECT_NEAR(ball.model.layers[0].volume_m3, surface * kFat_m, 0.05 * surface * kFat_m);
   FatPressure fat(ball.model, Ball::kCount);
   const VectorArray& force = ball.press(fat);
@@ -184,7 +181,7 @@ TEST(FatPressure, IsStableForEveryBulkModulus) {
       Ball ball(bulk_Pa, tissue, 0);
       FatPressure fat(ball.model, Ball::kCount);
       // What the kick would do to a strand alone.
-      const double kick = 0.05, swing_m = kick / std::sqrt(tissue / kDensity_kg_per_m2);
+      const double kick = 0.05, swing_m = kick / std::sqrt(tissue / kBallDensity_kg_per_m2);
       Random random(11);
       for (std::size_t k = 0; k < Ball::kCount; ++k)
         put(ball.velocity, k, kick * (0.5 + 0.5 * random.uniform(-1, 1)) * Ball::direction(k));

@@ -9,23 +9,18 @@
 #include <fascia/base/random.h>
 #include <fascia/math/types.h>
 
+#include "grids.h"
 #include "support/count_allocations.h"
 
 namespace fascia {
 namespace {
 
+using test::at;
+using test::put;
+
 constexpr float kGap_m = 0.002f;
 constexpr double kInterval_s = 1.0 / 60;
-constexpr int kSteps = 8;  // per interval
-
-Vec3 at(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
-void put(VectorArray& a, std::size_t k, const Vec3& v) {
-  a.x[k] = static_cast<float>(v.x());
-  a.y[k] = static_cast<float>(v.y());
-  a.z[k] = static_cast<float>(v.z());
-}
+constexpr int kStepsOfInterval = 8;  // per interval
 
 // Points and triangles as a skin has them, and the part of its stepping that matters here.
 struct Surface {
@@ -117,9 +112,9 @@ struct Surface {
   using Accelerate = std::function<void(double h_s)>;
   void interval(const Accelerate& accelerate = {}, float reach_m = 0.005f) {
     resolve(reach_m);
-    for (int s = 1; s <= kSteps; ++s) {
-      if (accelerate) accelerate(kInterval_s / kSteps);
-      step(s, kInterval_s / kSteps);
+    for (int s = 1; s <= kStepsOfInterval; ++s) {
+      if (accelerate) accelerate(kInterval_s / kStepsOfInterval);
+      step(s, kInterval_s / kStepsOfInterval);
     }
   }
 
@@ -244,7 +239,7 @@ std::size_t crossingsOfFoldedStrip(bool resolved) {
       strip.interval();
     } else {
       strip.around.normal.fill(0.f);
-      for (int s = 1; s <= kSteps; ++s) strip.step(s, kInterval_s / kSteps);
+      for (int s = 1; s <= kStepsOfInterval; ++s) strip.step(s, kInterval_s / kStepsOfInterval);
     }
     most = std::max(most, strip.crossingPairs());
   }

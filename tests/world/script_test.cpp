@@ -8,7 +8,7 @@ namespace {
 using test::issueOf;
 using test::logOf;
 using test::Play;
-using test::Stage;
+using test::PuppetStage;
 
 TEST(Script, ReadsAsThePapersScript) {
   Play play(R"(
@@ -21,7 +21,7 @@ TEST(Script, ReadsAsThePapersScript) {
   play.run();
   EXPECT_EQ(play.log(), "got it true");
   EXPECT_EQ(play.script.outcome(), ScriptOutcome::succeeded);
-  EXPECT_NEAR(play.stage.state.t_s, 1 + Stage::kStep_s, 1e-9);
+  EXPECT_NEAR(play.stage.state.t_s, 1 + PuppetStage::kStep_s, 1e-9);
   EXPECT_LT(play.stage.puppet->distance_m(play.stage["right 0"], play.stage["left 1"]), 1e-9);
   EXPECT_LT(play.stage.puppet->distance_m(play.stage["left 0"], play.stage["post"]), 1e-9);
 }

@@ -13,12 +13,12 @@ struct Play {
                 int dimension = 2)
       : stage(dimension), script(text, "play.lua", seed, limits) {}
 
-  void step(double h_s = Stage::kStep_s) {
+  void step(double h_s = PuppetStage::kStep_s) {
     script.update(*stage.puppet, h_s);
     stage.step(h_s);
   }
   // Until the script is through, or `t_s`.
-  void run(double t_s = 5, double h_s = Stage::kStep_s) {
+  void run(double t_s = 5, double h_s = PuppetStage::kStep_s) {
     while (!script.finished() && stage.state.t_s < t_s - 1e-9) step(h_s);
   }
   // All lines of the log, with ';' between them.
@@ -28,7 +28,7 @@ struct Play {
     return all;
   }
 
-  Stage stage;
+  PuppetStage stage;
   Script script;
 };
 

@@ -13,7 +13,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDeformationFooter =
     R"(Linear blending, dual quaternions, delta mush and Fascia on the same rig: single joints turned from
 the bind pose, and motions. A rigged file that is no character (.glb …) is shown without Fascia;
 'fascia flesh' makes a character of it. What is measured: docs/deformation.md.
@@ -94,7 +94,7 @@ void addDeformationBench(CLI::App& group, Console& console) {
   command.add_option("--pictures", options->pictures, "Draw the poses, methods side by side")
       ->type_name("FOLDER");
   console.addFlags(command);
-  command.footer(kFooter);
+  command.footer(kDeformationFooter);
   command.callback([options, &console] { runDeformation(*options, console); });
 }
 

@@ -15,7 +15,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kPaperFooter =
     R"(The three characters of Turner & Gobbetti (1998), Table 1, with 1024 skin points each, on one
 thread. "× real time" is simulated seconds per second of computing.
 
@@ -50,22 +50,22 @@ struct PaperOptions {
   double seconds = 2;
 };
 
-struct Result {
+struct PaperResult {
   double ratio = 0;  // × real time
   double paper_ratio = 0;
   double step_min_s = 0, step_max_s = 0;
   double forces = 0, constraints = 0;  // shares of the time
 };
 
-Result measure(const Character& character, const PaperRow& row, const std::string& integrator,
-               double seconds, const Console& console) {
+PaperResult measure(const Character& character, const PaperRow& row, const std::string& integrator,
+                    double seconds, const Console& console) {
   RecordOptions options;
   options.motion = chooseMotion(character, {});
   options.duration_s = seconds;
   const Recording recording = simulate(character, options, console);
   const SkinStats& stats = recording.stats;
   const double spent_s = stats.forces_s + stats.constraints_s + stats.other_s;
-  Result result;
+  PaperResult result;
   if (recording.wall_s > 0) result.ratio = recording.simulated_s / recording.wall_s;
   result.paper_ratio = 1 / paperSlowdown(row, integrator);
   result.step_min_s = stats.step_min_s;
@@ -75,7 +75,7 @@ Result measure(const Character& character, const PaperRow& row, const std::strin
   return result;
 }
 
-Json toJson(const PaperRow& row, const std::string& integrator, const Result& result) {
+Json toJson(const PaperRow& row, const std::string& integrator, const PaperResult& result) {
   return Json::Object{{"character", row.character},
                       {"integrator", integrator},
                       {"realtime_ratio", result.ratio},
@@ -87,7 +87,7 @@ Json toJson(const PaperRow& row, const std::string& integrator, const Result& re
                       {"share_constraints", result.constraints}};
 }
 
-std::string toLine(const PaperRow& row, const std::string& integrator, const Result& result) {
+std::string toLine(const PaperRow& row, const std::string& integrator, const PaperResult& result) {
   return fmt::format("{:9} {:8} {:8.3f} {:9.1f} {:8.0f} × {:7.2f}–{:<6.2f} {:5.1f} {:6.1f}",
                      row.character, integrator, result.paper_ratio, result.ratio,
                      result.ratio / result.paper_ratio, 1e3 * result.step_min_s,
@@ -107,7 +107,7 @@ void runPaper(const PaperOptions& options, const Console& console) {
       const Character character = loadCharacter(
           folder + "/" + row.character + ".fascia.json",
           {.columns = kColumns, .rows = kRows, .integrator = integrator, .step_s = 0});
-      const Result result = measure(character, row, integrator, options.seconds, console);
+      const PaperResult result = measure(character, row, integrator, options.seconds, console);
       console.say(toLine(row, integrator, result));
       results.push_back(toJson(row, integrator, result));
     }
@@ -138,7 +138,7 @@ void addPaperBench(CLI::App& group, Console& console) {
       ->type_name("SECONDS")
       ->check(numberIn(0.1, 3600));
   console.addFlags(command);
-  command.footer(kFooter);
+  command.footer(kPaperFooter);
   command.callback([options, &console] { runPaper(*options, console); });
 }
 

@@ -22,7 +22,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kReflexesFooter =
     R"(A script is a reflex if it succeeds from many starts (Witkin & Welch 1990, section 4.2). Runs scenes
 with the seeds 1, 2, 3, … until their scripts call succeed() or fail(), or time is up.
 
@@ -126,7 +126,7 @@ void addReflexesBench(CLI::App& group, Console& console) {
       ->type_name("N")
       ->check(numberIn(1, 1e6));
   console.addFlags(command);
-  command.footer(kFooter);
+  command.footer(kReflexesFooter);
   command.callback([options, &console] { runReflexes(*options, console); });
 }
 

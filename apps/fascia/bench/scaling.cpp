@@ -18,7 +18,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kScalingFooter =
     R"(One character with 1024, 10 000 and 100 000 skin points, on 1 and 2 threads. "× real time" is
 simulated seconds per second of computing.
 
@@ -42,7 +42,7 @@ struct ScalingOptions {
   double seconds = 2;
 };
 
-struct Result {
+struct ScalingResult {
   int columns = 0, rows = 0, threads = 0;
   double ratio = 0;  // × real time
   double frame_s = 0, steps_per_frame = 0;
@@ -63,8 +63,8 @@ BuildOptions gridOf(int points, const std::string& integrator) {
       .columns = std::max(8, (points + rows / 2) / rows), .rows = rows, .integrator = integrator};
 }
 
-Result measure(const std::string& file, const BuildOptions& build, int threads,
-               const ScalingOptions& options) {
+ScalingResult measure(const std::string& file, const BuildOptions& build, int threads,
+                      const ScalingOptions& options) {
   const ThreadLimit limit(threads);
   const std::size_t heapBefore = heapInUse_bytes();
   const auto character = std::make_unique<const Character>(loadCharacter(file, build));
@@ -72,7 +72,7 @@ Result measure(const std::string& file, const BuildOptions& build, int threads,
   const int motion = chooseMotion(*character, options.motion);
   CharacterState state = initialState(*character, motion);
 
-  Result result;
+  ScalingResult result;
   result.columns = build.columns, result.rows = build.rows, result.threads = threads;
   const int frames = std::max(1, static_cast<int>(std::lround(options.seconds / kFrame_s)));
   double wall_s = 0;
@@ -96,7 +96,7 @@ Result measure(const std::string& file, const BuildOptions& build, int threads,
   return result;
 }
 
-Json toJson(const Result& r) {
+Json toJson(const ScalingResult& r) {
   return Json::Object{{"points", r.columns * r.rows},
                       {"columns", r.columns},
                       {"rows", r.rows},
@@ -113,7 +113,7 @@ Json toJson(const Result& r) {
                       {"max_edge_stretch", r.stats.max_edge_stretch}};
 }
 
-std::string toLine(const Result& r) {
+std::string toLine(const ScalingResult& r) {
   return fmt::format(
       "{:8} {:7} {:10.2f} {:10.3f} {:7.0f} {:9.2f} {:7.0f} {:6.0f} {:6.0f} {:8.0f} {:9.3f} {:7.2f}",
       r.columns * r.rows, r.threads, r.ratio, 1e3 * r.frame_s, r.steps_per_frame, r.nsPerPointStep,
@@ -135,7 +135,8 @@ void runScaling(const ScalingOptions& options, const Console& console) {
   Json::List results;
   for (const int points : options.points) {
     for (const int threads : options.threads) {
-      const Result result = measure(file, gridOf(points, options.integrator), threads, options);
+      const ScalingResult result =
+          measure(file, gridOf(points, options.integrator), threads, options);
       console.say(toLine(result));
       results.push_back(toJson(result));
     }
@@ -172,7 +173,7 @@ void addScalingBench(CLI::App& group, Console& console) {
       ->type_name("SECONDS")
       ->check(numberIn(0.1, 3600));
   console.addFlags(command);
-  command.footer(kFooter);
+  command.footer(kScalingFooter);
   command.callback([options, &console] { runScaling(*options, console); });
 }
 

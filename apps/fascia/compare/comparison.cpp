@@ -185,10 +185,10 @@ class Comparison {
     Image image;
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       const double share = static_cast<double>(i) / count;
-      const Shot shot{.frame = frames_[i],
-                      .turn = share,
-                      .wipe = 0.5 + kWipeReach * std::sin(2 * kPi * wipes * share),
-                      .gone = path_[frames_[i]]};
+      const FilmPicture shot{.frame = frames_[i],
+                             .turn = share,
+                             .wipe = 0.5 + kWipeReach * std::sin(2 * kPi * wipes * share),
+                             .gone = path_[frames_[i]]};
       toImage(shooting.draw(shot, moments_[i], title(frames_[i])), image);
       video.add(image);
       if (!progress.update((static_cast<double>(i) + 1) / count)) throw Interrupted{};

@@ -35,7 +35,8 @@ std::vector<Mark> Shooting::marksOn(const Camera& camera, const Cell& cell) cons
   return marks;
 }
 
-const Pixels& Shooting::draw(const Shot& shot, const Moment& moment, const std::string& title) {
+const Pixels& Shooting::draw(const FilmPicture& shot, const Moment& moment,
+                             const std::string& title) {
   sides_.seek(shot.frame);
   for (const Side side : kSides) sides_.points(shot.frame, side, points_[side]);
   middles_.clear();

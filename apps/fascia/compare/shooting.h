@@ -16,7 +16,7 @@ struct Setting {
 };
 
 // How one picture differs from the others of a film.
-struct Shot {
+struct FilmPicture {
   std::size_t frame = 0;
   double turn = 0;    // [0, 1] around the figure
   double wipe = 0.5;  // where the line is
@@ -29,7 +29,7 @@ class Shooting {
   Shooting(Sides& sides, MainView view, std::vector<Place> places, Sheet sheet, Setting around);
 
   // The moment is the shot's frame, measured. Valid until the next call.
-  const Pixels& draw(const Shot& shot, const Moment& moment, const std::string& title);
+  const Pixels& draw(const FilmPicture& shot, const Moment& moment, const std::string& title);
 
  private:
   Scene sceneOf(Side side) const;

@@ -16,7 +16,7 @@ namespace {
 
 // Longer motions are fitted in this many frames, evenly spread; all frames are fitted at the end
 // with the weights found. More frames hardly change the weights, but cost time in proportion.
-constexpr std::size_t kMostFittedFrames = 90;
+constexpr std::size_t kFramesOfOneMotion = 90;
 // … and so many more for every further motion, up to a bound.
 constexpr std::size_t kMoreFrames = 8, kMostFramesOfAll = 240;
 // Frames whose helpers are fitted at once: bounds the memory that long motions take.
@@ -34,7 +34,7 @@ struct FittedFrames {
 FittedFrames fittedFrames(std::size_t count, std::vector<std::size_t> motionFrames) {
   if (motionFrames.empty()) motionFrames.push_back(count);
   const std::size_t budget =
-      std::min(kMostFramesOfAll, kMostFittedFrames + kMoreFrames * (motionFrames.size() - 1));
+      std::min(kMostFramesOfAll, kFramesOfOneMotion + kMoreFrames * (motionFrames.size() - 1));
   FittedFrames out;
   std::size_t first = 0;
   for (const std::size_t length : motionFrames) {

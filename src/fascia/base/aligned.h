@@ -30,6 +30,8 @@ using FloatArray = std::vector<float, AlignedAllocator<float>>;
 // Structure of arrays for vectors: three float arrays of the same length.
 struct VectorArray {
   FloatArray x, y, z;
+  static constexpr FloatArray VectorArray::*kAxes[3] = {&VectorArray::x, &VectorArray::y,
+                                                        &VectorArray::z};
 
   VectorArray() = default;
   explicit VectorArray(std::size_t n) : x(n), y(n), z(n) {}

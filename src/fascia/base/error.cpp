@@ -33,6 +33,10 @@ Error::Error(std::vector<Issue> issues)
 
 Error::Error(const std::string& message) : Error(Issue{{}, message, {}}) {}
 
+Error fileError(const std::string& path, std::string message, std::string hint) {
+  return Error(Issue{{path, 0, {}}, std::move(message), std::move(hint)});
+}
+
 void Diagnostics::error(std::string pointer, std::string message, std::string hint) {
   errors_.push_back({{{}, 0, std::move(pointer)}, std::move(message), std::move(hint)});
 }

@@ -13,6 +13,11 @@ struct Location {
   std::string pointer;  // JSON pointer, e.g. "/skin/material/density_kg_per_m2"
 };
 
+// The JSON pointer to an entry of the list at `list`.
+inline std::string entryOf(const std::string& list, std::size_t index) {
+  return list + "/" + std::to_string(index);
+}
+
 // One thing that is wrong with the input: what was found, what was expected, how to mend it.
 struct Issue {
   Location where;
@@ -35,6 +40,9 @@ class Error : public std::runtime_error {
  private:
   std::vector<Issue> issues_;
 };
+
+// Of a file as a whole: "penguin.glb: is cut short".
+Error fileError(const std::string& path, std::string message, std::string hint = {});
 
 // Collects all issues of one input, so that a person sees every error at once, not the first only.
 class Diagnostics {

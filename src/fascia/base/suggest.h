@@ -10,7 +10,7 @@
 namespace fascia {
 
 // A name from a file made fit for a message: quoted, control characters replaced, cut when long.
-inline std::string quoted(std::string_view name) {
+inline std::string quotedName(std::string_view name) {
   constexpr std::size_t kLongest = 60;
   std::string text = "'";
   for (const char c : name.substr(0, kLongest)) {
@@ -43,7 +43,7 @@ class NearestName {
 
   const std::string& best() const { return best_; }  // empty: nothing is near
   std::string hint() const {
-    return best_.empty() ? "" : "did you mean " + fascia::quoted(best_) + "?";
+    return best_.empty() ? "" : "did you mean " + quotedName(best_) + "?";
   }
 
  private:

@@ -35,14 +35,16 @@ using BasisPtr = std::shared_ptr<const Basis>;
 // or 3, like all of these.
 BasisPtr makeAffineBasis(int dimension);
 
-// All monomials up to the total degree `order` in [1, 8]: order 2 is the paper's second-order body
-// (§2.2, figure 1). They are taken of X mapped from `domain` to [-1, 1], which spans the same
-// shapes and keeps high orders well conditioned.
+inline constexpr int kMaxPolynomialOrder = 8, kMaxLatticeCells = 6;
+
+// All monomials up to the total degree `order` in [1, kMaxPolynomialOrder]: order 2 is the paper's
+// second-order body (§2.2, figure 1). They are taken of X mapped from `domain` to [-1, 1], which
+// spans the same shapes and keeps high orders well conditioned.
 BasisPtr makePolynomialBasis(int dimension, int order, const Box& domain);
 
 // A free-form deformation lattice (Sederberg & Parry 1986): products of Bernstein polynomials of
-// degree cells[axis] in [1, 6] over `domain`; R's columns are then the lattice's control points,
-// with the x index running fastest.
+// degree cells[axis] in [1, kMaxLatticeCells] over `domain`; R's columns are then the lattice's
+// control points, with the x index running fastest.
 BasisPtr makeBernsteinBasis(int dimension, const Eigen::Vector3i& cells, const Box& domain);
 
 // Functions from data: p = w_j(X) [X, Y, (Z,) 1] with the smoothest weights w_j there are, the

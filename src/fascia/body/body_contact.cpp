@@ -4,20 +4,11 @@
 #include <map>
 
 #include <fascia/base/error.h>
+#include <fascia/body/check_range.h>
 #include <fascia/body/contact_search.h>
 
 namespace fascia {
 namespace {
-
-void checkRange(const char* what, double found, double low, double high) {
-  if (found >= low && found <= high) return;
-  Issue issue{{},
-              "contacts: " + std::string(what) + ": found " + std::to_string(found) +
-                  ", expected a number in [" + std::to_string(low) + ", " + std::to_string(high) +
-                  "]",
-              {}};
-  throw Error(issue);
-}
 
 constexpr double kMaxFriction = 10;
 
@@ -35,11 +26,11 @@ BodyContacts::BodyContacts(const BodyModel& model, const Vec3& gravity_m_per_s2,
       bodies_(model.bodyCount()),
       set_(model),
       search_(std::make_unique<ContactSearch>(*this)) {
-  checkRange("friction", settings.friction, 0, kMaxFriction);
-  checkRange("margin_m", settings.margin_m, 0, 1e3);
-  checkRange("creep_per_s", settings.creep_per_s, 1e-9, 1);
-  checkRange("points_per_body", settings.points_per_body, 1, 1000);
-  if (settings.ground_m) checkRange("ground_m", *settings.ground_m, -1e6, 1e6);
+  checkRange("contacts", "friction", settings.friction, 0, kMaxFriction);
+  checkRange("contacts", "margin_m", settings.margin_m, 0, 1e3);
+  checkRange("contacts", "creep_per_s", settings.creep_per_s, 1e-9, 1);
+  checkRange("contacts", "points_per_body", settings.points_per_body, 1, 1000);
+  if (settings.ground_m) checkRange("contacts", "ground_m", *settings.ground_m, -1e6, 1e6);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     heaviest_kg_ = std::max(heaviest_kg_, model.shape(BodyId(b)).mass_kg());
 }
@@ -49,7 +40,7 @@ BodyContacts::~BodyContacts() = default;
 void BodyContacts::setSurface(BodyId body, BodySurfacePtr surface, std::optional<double> friction) {
   if (!model_.contains(body)) throw Error("contacts: found a surface of no body");
   const double mu = friction.value_or(settings_.friction);
-  checkRange("friction", mu, 0, kMaxFriction);
+  checkRange("contacts", "friction", mu, 0, kMaxFriction);
   bodies_[body.index()] = {std::move(surface), nullptr, mu, {}};
   changed_ = true;
 }
@@ -67,7 +58,7 @@ void BodyContacts::collidePair(BodyId a, BodyId b) {
 
 ObstacleId BodyContacts::addObstacle(const Field& field, std::optional<double> friction) {
   const double mu = friction.value_or(settings_.friction);
-  checkRange("friction", mu, 0, kMaxFriction);
+  checkRange("contacts", "friction", mu, 0, kMaxFriction);
   obstacles_.push_back({ObstacleId(nextObstacle_++), &field, mu});
   return obstacles_.back().id;
 }

@@ -1,11 +1,10 @@
 #include <fascia/body/body_def.h>
 
 #include <fascia/base/suggest.h>
+#include <fascia/body/basis.h>
 
 namespace fascia {
 namespace {
-
-constexpr int kMaxOrder = 8, kMaxCells = 6;
 
 class Ranges {
  public:
@@ -30,10 +29,10 @@ class Ranges {
 void validate(const BodyBasisDef& def, const std::string& pointer, Diagnostics& diagnostics) {
   const Ranges ranges(pointer, diagnostics);
   if (def.kind == BodyBasisDef::Kind::polynomial)
-    ranges.check("/polynomial", def.order, 1, kMaxOrder);
+    ranges.check("/polynomial", def.order, 1, kMaxPolynomialOrder);
   if (def.kind != BodyBasisDef::Kind::lattice) return;
   for (int axis = 0; axis < 3; ++axis)
-    ranges.check("/lattice/" + std::to_string(axis), def.cells[axis], 1, kMaxCells);
+    ranges.check("/lattice/" + std::to_string(axis), def.cells[axis], 1, kMaxLatticeCells);
 }
 
 void validate(const BodyMaterialDef& def, const std::string& pointer, Diagnostics& diagnostics) {

@@ -8,8 +8,9 @@
 #include <Eigen/SVD>
 
 #include <fascia/base/error.h>
-#include <fascia/field/affine_points.h>
+#include <fascia/field/affine_kernels.h>
 #include <fascia/geometry/box_tree.h>
+#include <fascia/math/points.h>
 
 namespace fascia {
 namespace {
@@ -23,16 +24,6 @@ struct VectorChunk {
 
   Vectors view(std::size_t count) { return {x, y, z, count}; }
 };
-
-Vec3 at(ConstVectors v, std::size_t i) {
-  return {v.x[i], v.y[i], v.z[i]};
-}
-
-void set(Vectors v, std::size_t i, const Vec3& value) {
-  v.x[i] = static_cast<float>(value.x());
-  v.y[i] = static_cast<float>(value.y());
-  v.z[i] = static_cast<float>(value.z());
-}
 
 template <class V>
 V part(V v, std::size_t first, std::size_t count) {
@@ -55,7 +46,7 @@ Vec3 corner(const Box& box, std::size_t c) {
 void writeClearance(const BodyMap::Clearance& clearance, float& distance_m, Vectors normal,
                     std::size_t i) {
   distance_m = static_cast<float>(clearance.distance_m);
-  set(normal, i, clearance.away);
+  setPoint(normal, i, clearance.away);
 }
 
 }  // namespace
@@ -124,7 +115,7 @@ void BodyField::evaluateAffine(std::size_t solid, ConstVectors points, float* di
   const BodyMap::Inverse center = map.inverse(map.center().x_m);
   if (!center.found) {
     for (std::size_t i = 0; i < points.count; ++i)
-      writeClearance(map.planeClearance(at(points, i)), distance_m[i], normal, i);
+      writeClearance(map.planeClearance(pointAt(points, i)), distance_m[i], normal, i);
     return;
   }
   const Mat3 inverse = center.gradient.inverse();
@@ -150,24 +141,24 @@ void BodyField::evaluateCurved(std::size_t solid, ConstVectors points, float* di
   std::array<std::size_t, kChunk> mapped;  // which points they are
   std::size_t count = 0;
   for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 x = at(points, i);
+    const Vec3 x = pointAt(points, i);
     const bool far = squaredDistance(bounds, x) > far_m * far_m;
     const BodyMap::Inverse found = far ? BodyMap::Inverse{} : map.inverse(x);
     if (far || !found.found) {
       writeClearance(far ? map.boxClearance(x) : map.planeClearance(x), distance_m[i], normal, i);
       continue;
     }
-    set(X.view(kChunk), count, found.X_m);
+    setPoint(X.view(kChunk), count, found.X_m);
     inverse[count] = found.gradient.inverse();
     mapped[count++] = i;
   }
   std::array<float, kChunk> undeformed_m;
   (*parts_)[solid].surface->evaluate(X.view(count), undeformed_m.data(), n.view(count));
   for (std::size_t k = 0; k < count; ++k) {
-    const Vec3 gradient = inverse[k].transpose() * at(n.view(count), k);
+    const Vec3 gradient = inverse[k].transpose() * pointAt(n.view(count), k);
     const double length = gradient.norm();
     distance_m[mapped[k]] = static_cast<float>(undeformed_m[k] / length);
-    set(normal, mapped[k], gradient / length);
+    setPoint(normal, mapped[k], gradient / length);
   }
 }
 
@@ -181,7 +172,7 @@ void BodyField::velocity(SolidId solid, ConstVectors points, Vectors velocity) c
     return;
   }
   for (std::size_t i = 0; i < points.count; ++i)
-    set(velocity, i, map.velocity(map.inverse(at(points, i)).X_m));
+    setPoint(velocity, i, map.velocity(map.inverse(pointAt(points, i)).X_m));
 }
 
 Vec3 BodyField::materialFromWorld(SolidId solid, const Vec3& world) const {

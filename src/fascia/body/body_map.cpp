@@ -14,7 +14,7 @@ namespace {
 // How far beyond its box, in parts of its size, a body's polynomials are still trusted.
 constexpr double kMargin = 0.25;
 constexpr int kMaxIterations = 40;
-constexpr int kMaxHalvings = 8;
+constexpr int kMaxShorterSteps = 8;
 // Of the body's size: where Newton's method ends, and what it must reach to have found the point.
 constexpr double kTolerance = 1e-10, kFoundTolerance = 1e-7;
 // Gradients that squeeze volume below this part cannot be inverted in any useful way.
@@ -243,7 +243,7 @@ BodyMap::Inverse BodyMap::newton(const Vec3& x, const Vec3& start) const {
     const Vec3 full = F.inverse() * (x - tangent.x_m);
     double share = std::min(1.0, 0.5 * size_m / full.norm());
     bool nearer = false;
-    for (int halving = 0; halving < kMaxHalvings && !nearer; ++halving, share *= 0.5) {
+    for (int halving = 0; halving < kMaxShorterSteps && !nearer; ++halving, share *= 0.5) {
       const Vec3 X = here.X_m + share * full;
       const Tangent there = at(X);
       const double thereOff_m = (x - there.x_m).norm();

@@ -16,7 +16,7 @@ LineRule forceRule(BodyScheme scheme) {
   return scheme == BodyScheme::energyConserving ? gaussRule(3) : LineRule{{1.0}, {1.0}};
 }
 
-constexpr std::size_t kBodiesPerTask = 16;
+constexpr std::size_t kEquationsPerTask = 16;
 
 // Corrections of contacts below this part of a body's size, a tenth of their margin, may be the
 // last.
@@ -109,12 +109,12 @@ BodyNewton::Result BodyNewton::solve(const OdeState& from, double h_s, double le
 // there is none.
 double BodyNewton::iterate(const OdeState& from, double h_s, double t_s) {
   evaluateConstraints(from, t_s);
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { linearize(body, from, h_s); });
+  forEachBody(work_.size(), kEquationsPerTask, [&](BodyId body) { linearize(body, from, h_s); });
   const bool sound = std::ranges::all_of(work_, &Work::sound);
   if (!sound || !solveConstraints(h_s)) return std::numeric_limits<double>::quiet_NaN();
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { correct(body); });
+  forEachBody(work_.size(), kEquationsPerTask, [&](BodyId body) { correct(body); });
   if (contacts_ && contacts_->pairsPress()) coupleContacts();
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { measure(body); });
+  forEachBody(work_.size(), kEquationsPerTask, [&](BodyId body) { measure(body); });
   applyCorrections(from, h_s, t_s);
   double largest = 0;
   for (const Work& work : work_) {
@@ -136,7 +136,7 @@ void BodyNewton::guess(const OdeState& from, double h_s, double t_s) {
   for (std::size_t i = 0; i < constraints_.size(); ++i) startValue_[i] = constraints_.rows(i).value;
   if (!system_.damped()) return;
   const BodyModel& model = system_.model();
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) {
+  forEachBody(work_.size(), kEquationsPerTask, [&](BodyId body) {
     Work& work = work_[body.index()];
     work.damping.setZero();
     model.shape(body).addDampingMatrix(model.part(body, from.r), 1, work.damping,
@@ -345,7 +345,7 @@ double BodyNewton::bodyMerit(BodyId body, const OdeState& from, double h_s, doub
 }
 
 double BodyNewton::merit(const OdeState& from, double h_s, double t_s, double step) {
-  forEachBody(work_.size(), kBodiesPerTask,
+  forEachBody(work_.size(), kEquationsPerTask,
               [&](BodyId body) { work_[body.index()].merit_J = bodyMerit(body, from, h_s, step); });
   double sum = 0;
   for (const Work& work : work_) sum += work.merit_J;

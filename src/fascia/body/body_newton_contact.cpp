@@ -10,7 +10,7 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kBodiesPerTask = 32;
+constexpr std::size_t kContactEquationsPerTask = 32;
 // Friction goes by the normal forces of the iteration at hand. Should they chase each other, they
 // stay from here on, and what is left is one convex problem.
 constexpr int kFollowingIterations = 10;
@@ -69,7 +69,7 @@ bool BodyNewton::addContacts(BodyId body) {
 // was given, K p = Σ ρ + C p up to forces Jᵀ λ, which no legal p feels.
 void BodyNewton::coupleContacts() {
   const std::size_t n = way_.size();
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) {
+  forEachBody(work_.size(), kContactEquationsPerTask, [&](BodyId body) {
     Work& work = work_[body.index()];
     work.inverse.setIdentity();
     choleskySolveInPlace(work.matrix, work.inverse);
@@ -111,7 +111,7 @@ void BodyNewton::coupleContacts() {
 void BodyNewton::precondition(std::span<const double> residual, std::span<double> z) {
   const BodyModel& model = system_.model();
   std::ranges::copy(residual, z.begin());
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) {
+  forEachBody(work_.size(), kContactEquationsPerTask, [&](BodyId body) {
     const std::span<double> part = model.part(body, z);
     const auto isZero = [](double x) { return x == 0; };
     if (std::ranges::all_of(part, isZero)) return;  // it touches nobody
@@ -125,7 +125,7 @@ void BodyNewton::precondition(std::span<const double> residual, std::span<double
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] = -constraints_.jacobianTimes(i, z);
   matrix_.solve(lambda_);
   const int d = model.dimension();
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) {
+  forEachBody(work_.size(), kContactEquationsPerTask, [&](BodyId body) {
     const Work& work = work_[body.index()];
     const std::span<double> part = model.part(body, z);
     Eigen::Map<Eigen::VectorXd> target(part.data(), static_cast<Eigen::Index>(part.size()));

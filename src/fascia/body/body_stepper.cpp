@@ -11,7 +11,7 @@ namespace fascia {
 namespace {
 
 // A step that does not converge in 1/16 of its length will not in less.
-constexpr int kMaxHalvings = 4;
+constexpr int kMaxTimeHalvings = 4;
 
 void checkOption(bool sound, const char* what, double found, const char* expected) {
   if (sound) return;
@@ -49,7 +49,7 @@ BodyStepper::BodyStepper(BodySystem& system, const BodyStepperOptions& options)
 BodyStepper::~BodyStepper() = default;
 
 void BodyStepper::step(double h_s, OdeState& state) {
-  stepOrHalve(h_s, 0, state, kMaxHalvings);
+  stepOrHalve(h_s, 0, state, kMaxTimeHalvings);
 }
 
 void BodyStepper::stepOrHalve(double h_s, double lead_s, OdeState& state, int halvingsLeft) {

@@ -5,29 +5,20 @@
 
 #include <fascia/base/error.h>
 #include <fascia/body/body_contact.h>
+#include <fascia/body/check_range.h>
 #include <fascia/body/for_each_body.h>
 
 namespace fascia {
 namespace {
 
-constexpr std::size_t kBodiesPerTask = 64;
-
-void checkRange(const char* what, double found, double low, double high) {
-  if (found >= low && found <= high) return;
-  Issue issue{{},
-              "body system: " + std::string(what) + ": found " + std::to_string(found) +
-                  ", expected a number in [" + std::to_string(low) + ", " + std::to_string(high) +
-                  "]",
-              {}};
-  throw Error(issue);
-}
+constexpr std::size_t kForcesPerTask = 64;
 
 }  // namespace
 
 BodySystem::BodySystem(BodyModel model, const BodySettings& settings)
     : model_(std::move(model)), settings_(settings), hard_(model_), soft_(model_) {
-  checkRange("feedback_s", settings.feedback_s, 1e-9, 1e3);
-  checkRange("gravity_m_per_s2", settings.gravity_m_per_s2.norm(), 0, 1e6);
+  checkRange("body system", "feedback_s", settings.feedback_s, 1e-9, 1e3);
+  checkRange("body system", "gravity_m_per_s2", settings.gravity_m_per_s2.norm(), 0, 1e6);
   inverseMass_.assign(model_.size(), 1.0);
   work_.resize(model_.size());
   for (std::size_t b = 0; b < model_.bodyCount(); ++b)
@@ -80,8 +71,8 @@ ConstraintId BodySystem::hold(ConstraintPtr constraint) {
 }
 
 ConstraintId BodySystem::pull(const SoftConstraint& soft) {
-  checkRange("stiffness_N_per_m", soft.stiffness_N_per_m, 1e-12, 1e12);
-  checkRange("damping_Ns_per_m", soft.damping_Ns_per_m, 0, 1e12);
+  checkRange("body system", "stiffness_N_per_m", soft.stiffness_N_per_m, 1e-12, 1e12);
+  checkRange("body system", "damping_Ns_per_m", soft.damping_Ns_per_m, 0, 1e12);
   return keep({{}, soft.constraint, Softness{soft.stiffness_N_per_m, soft.damping_Ns_per_m}});
 }
 
@@ -165,7 +156,7 @@ std::span<const double> BodySystem::constantForces() {
 }
 
 void BodySystem::addBodyForces(std::span<const double> q, std::span<double> f) const {
-  forEachBody(model_.bodyCount(), kBodiesPerTask, [&](BodyId body) {
+  forEachBody(model_.bodyCount(), kForcesPerTask, [&](BodyId body) {
     model_.shape(body).addElasticForce(model_.part(body, q), model_.part(body, f));
   });
 }
@@ -173,7 +164,7 @@ void BodySystem::addBodyForces(std::span<const double> q, std::span<double> f) c
 void BodySystem::addDampingForces(std::span<const double> q, std::span<const double> v,
                                   std::span<double> f) const {
   if (!damped_) return;
-  forEachBody(model_.bodyCount(), kBodiesPerTask, [&](BodyId body) {
+  forEachBody(model_.bodyCount(), kForcesPerTask, [&](BodyId body) {
     const BodyShape& shape = model_.shape(body);
     if (shape.damped())
       shape.addDampingForce(model_.part(body, q), model_.part(body, v), model_.part(body, f));

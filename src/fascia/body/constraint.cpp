@@ -76,10 +76,6 @@ double checkedLength(const std::string& name, double length_m) {
   throw Error(issue);
 }
 
-PointPath fixedAt(const Vec3& place_m) {
-  return [place_m](double) { return PathPoint{.position_m = place_m}; };
-}
-
 // c = (d·d − l²)/(2 l) with d = x_a − x_b: zero where the length is l, and there with a gradient of
 // unit length.
 class Rod final : public Constraint {
@@ -111,6 +107,10 @@ class Rod final : public Constraint {
 };
 
 }  // namespace
+
+PointPath fixedAt(const Vec3& place_m) {
+  return [place_m](double) { return PathPoint{.position_m = place_m}; };
+}
 
 ConstraintPtr makeAttachment(std::string name, const BodyPoint& a, const BodyPoint& b) {
   return std::make_shared<Attachment>(std::move(name), a, b);

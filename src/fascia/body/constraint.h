@@ -60,6 +60,7 @@ struct PathPoint {
        acceleration_m_per_s2 = Vec3::Zero();
 };
 using PointPath = std::function<PathPoint(double t_s)>;
+PointPath fixedAt(const Vec3& place_m);
 
 // Linear: constant Jacobians.
 ConstraintPtr makeAttachment(std::string name, const BodyPoint& a, const BodyPoint& b);

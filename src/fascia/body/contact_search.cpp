@@ -6,11 +6,12 @@
 
 #include <fascia/body/for_each_body.h>
 #include <fascia/geometry/box_tree.h>
+#include <fascia/math/points.h>
 
 namespace fascia {
 namespace {
 
-constexpr std::size_t kBodiesPerTask = 8;
+constexpr std::size_t kSearchesPerTask = 8;
 // Ways shorter than so many margins are not traced: nothing gets lost in them.
 constexpr double kShortWay = 4;
 constexpr int kMaxTraceSteps = 16;
@@ -24,14 +25,6 @@ constexpr double kLoadStiffness = 0.25;
 // In two dimensions a surface that faces the plane less than this cannot push within it.
 constexpr double kFlat = 0.2;
 
-Vec3 at(ConstVectors v, std::size_t i) {
-  return {v.x[i], v.y[i], v.z[i]};
-}
-void set(VectorArray& v, std::size_t i, const Vec3& value) {
-  v.x[i] = static_cast<float>(value.x());
-  v.y[i] = static_cast<float>(value.y());
-  v.z[i] = static_cast<float>(value.z());
-}
 Vec3 rounded(const Vec3& v) {
   return v.cast<float>().cast<double>();
 }
@@ -52,7 +45,7 @@ double speedOf(const Field& field, SolidId solid) {
   field.velocity(solid, {x.data(), y.data(), z.data(), Field::kOutline}, velocity);
   double fastest = 0;
   for (std::size_t c = 0; c < Field::kOutline; ++c)
-    fastest = std::max(fastest, at(velocity, c).norm());
+    fastest = std::max(fastest, pointAt(velocity, c).norm());
   return fastest;
 }
 
@@ -78,10 +71,10 @@ void ContactSearch::resize() {
 
 void ContactSearch::find(const BodyContacts::Step& step, const BodyField& bodies, ContactSet& set) {
   step_ = step;
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { movePoints(body); });
+  forEachBody(work_.size(), kSearchesPerTask, [&](BodyId body) { movePoints(body); });
   findNearBodies();
   gatherObstacles();
-  forEachBody(work_.size(), kBodiesPerTask, [&](BodyId body) { findContacts(body, bodies); });
+  forEachBody(work_.size(), kSearchesPerTask, [&](BodyId body) { findContacts(body, bodies); });
   set.clear();
   for (Work& work : work_) {
     for (Found& found : work.found) {
@@ -202,30 +195,31 @@ void ContactSearch::meet(BodyId body, const Target& target) {
   const double margin_m = marginOf(body, target.size_m);
   if (!pick(work, inflated(target.bounds, margin_m))) return;
   const std::size_t count = work.picked.size();
-  for (std::size_t i = 0; i < count; ++i) set(work.place, i, work.start.col(work.picked[i]));
+  for (std::size_t i = 0; i < count; ++i) setPoint(work.place, i, work.start.col(work.picked[i]));
   const auto first = [&](VectorArray& array) { return view(array, 0, count); };
   target.field->velocity(target.solid, first(work.place), first(work.velocity));
   const auto start = [&](std::size_t i) {
-    return Vec3(work.start.col(work.picked[i]) + shift_s(target) * at(first(work.velocity), i));
+    return Vec3(work.start.col(work.picked[i]) +
+                shift_s(target) * pointAt(first(work.velocity), i));
   };
   const auto way = [&](std::size_t i) {
-    return Vec3(work.way.col(work.picked[i]) - step_.h_s * at(first(work.velocity), i));
+    return Vec3(work.way.col(work.picked[i]) - step_.h_s * pointAt(first(work.velocity), i));
   };
-  for (std::size_t i = 0; i < count; ++i) set(work.place, i, start(i));
+  for (std::size_t i = 0; i < count; ++i) setPoint(work.place, i, start(i));
   target.field->evaluate(target.solid, first(work.place), work.distance_m.data(),
                          first(work.normal));
-  for (std::size_t i = 0; i < count; ++i) set(work.place, i, start(i) + way(i));
+  for (std::size_t i = 0; i < count; ++i) setPoint(work.place, i, start(i) + way(i));
   target.field->evaluate(target.solid, first(work.place), work.endDistance_m.data(),
                          first(work.endNormal));
   for (std::size_t i = 0; i < count; ++i) {
-    const Plane begin{rounded(start(i)), work.distance_m[i], at(first(work.normal), i)};
+    const Plane begin{rounded(start(i)), work.distance_m[i], pointAt(first(work.normal), i)};
     const Plane end{rounded(start(i) + way(i)), work.endDistance_m[i],
-                    at(first(work.endNormal), i)};
+                    pointAt(first(work.endNormal), i)};
     const double length_m = way(i).norm();
     const bool covered = begin.distance_m + end.distance_m >= length_m && end.distance_m >= 0;
     const bool isShort = length_m <= kShortWay * margin_m;
     const Plane plane = covered || isShort ? end : trace(begin, end, target, margin_m);
-    const Vec3 drift = step_.h_s * at(first(work.velocity), i);
+    const Vec3 drift = step_.h_s * pointAt(first(work.velocity), i);
     addContact(body, work.picked[i], plane, start(i), way(i),
                target.body.valid() ? Vec3(Vec3::Zero()) : drift, target);
   }

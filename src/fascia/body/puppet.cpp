@@ -26,7 +26,7 @@ Puppet::Puppet(BodySystem& system, OdeState& state, std::vector<NamedPoint> poin
 Puppet::~Puppet() = default;
 
 void Puppet::addPoint(const NamedPoint& point) {
-  const std::string which = "puppet: point " + quoted(point.name) + ": ";
+  const std::string which = "puppet: point " + quotedName(point.name) + ": ";
   if (point.name.empty()) throw Error("puppet: found a point without a name, expected one");
   if (names_.contains(point.name)) throw Error(which + "found the name twice, expected it once");
   if (const auto* on = std::get_if<BodyPoint>(&point.place)) {
@@ -47,7 +47,7 @@ PuppetPointId Puppet::find(std::string_view name) const {
   if (found != names_.end()) return found->second;
   NearestName nearest(name);
   for (const auto& [known, id] : names_) nearest.offer(known);
-  Issue issue{{}, "no point is named " + quoted(name), nearest.hint()};
+  Issue issue{{}, "no point is named " + quotedName(name), nearest.hint()};
   throw Error(issue);
 }
 
@@ -60,7 +60,7 @@ const BodyPoint& Puppet::bodyPoint(PuppetPointId point) const {
     throw Error("puppet: found the number of no point");
   if (const auto* on = std::get_if<BodyPoint>(&points_[point.index()].place)) return *on;
   Issue issue{{},
-              quoted(name(point)) + " is a place, expected a point of a body",
+              quotedName(name(point)) + " is a place, expected a point of a body",
               "only points of bodies can be led, held or pushed"};
   throw Error(issue);
 }

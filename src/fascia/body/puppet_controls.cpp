@@ -20,10 +20,6 @@ void checkFinite(const char* what, const Vec3& v) {
     throw Error("puppet: " + std::string(what) + ": found a number that is not finite");
 }
 
-PointPath fixedAt(const Vec3& place_m) {
-  return [place_m](double) { return PathPoint{.position_m = place_m}; };
-}
-
 }  // namespace
 
 ConstraintId Puppet::lead(PuppetPointId point, PointPath path) {
@@ -78,7 +74,7 @@ void Puppet::connect(PuppetPointId point, const Target& target) {
   const CubicSegment gap(now, apart_m, Vec3::Zero(), now + kClosing_s, Vec3::Zero(), Vec3::Zero());
   if (const BodyPoint* other = bodyPointOf(target)) {
     const PuppetPointId b = std::get<PuppetPointId>(target);
-    if (samePoint(point, b)) throw Error(quoted(name(b)) + " cannot be connected to itself");
+    if (samePoint(point, b)) throw Error(quotedName(name(b)) + " cannot be connected to itself");
     if (connected(point, b)) return;
     const std::string title = name(point) + " at " + name(b);
     connections_.push_back(
@@ -139,7 +135,7 @@ void Puppet::pull(PuppetPointId point, const Target& target, double stiffness_N_
             place ? std::make_shared<Vec3>(*place) : nullptr,
             {}};
   if (bodyPointOf(target) && samePoint(point, std::get<PuppetPointId>(target)))
-    throw Error(quoted(name(point)) + " cannot be pulled to itself");
+    throw Error(quotedName(name(point)) + " cannot be pulled to itself");
   pull.constraint = system_.pull({makeSpring(pull), stiffness_N_per_m, damping_Ns_per_m});
   endPull(point);
   pulls_.push_back(std::move(pull));

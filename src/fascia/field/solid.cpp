@@ -18,9 +18,9 @@ void reportUnknown(const std::string& pointer, const std::string& found,
   std::string list;
   for (const T* one : all) {
     nearest.offer(one->name());
-    list += (list.empty() ? "" : ", ") + quoted(one->name());
+    list += (list.empty() ? "" : ", ") + quotedName(one->name());
   }
-  diagnostics.error(pointer, "found " + quoted(found) + ", expected one of " + list,
+  diagnostics.error(pointer, "found " + quotedName(found) + ", expected one of " + list,
                     nearest.hint());
 }
 

@@ -27,7 +27,7 @@ int bindJoint(const TrackDef& track, const Skeleton& skeleton, const std::string
   const JointId joint = resolveJoint(skeleton, track.name, pointer + "/joint", diagnostics);
   const std::optional<Dof> dof = dofFromName(track.channel);
   if (!dof) {
-    diagnostics.error(pointer + "/dof", "unknown degree of freedom " + quoted(track.channel),
+    diagnostics.error(pointer + "/dof", "unknown degree of freedom " + quotedName(track.channel),
                       "expected tx, ty, tz, rx, ry or rz");
   }
   if (!dof || !joint.valid()) return -1;
@@ -44,7 +44,7 @@ SolidId bindSolid(const TrackDef& track, const Flesh& flesh, const Flesh& orname
   if (solid.valid()) return solid;
   if (ornaments.find(track.name).valid()) {
     diagnostics.error(pointer + "/solid",
-                      quoted(track.name) + " is an ornament: ornaments are rigid",
+                      quotedName(track.name) + " is an ornament: ornaments are rigid",
                       "make it one of the solids, or move its joint");
     return {};
   }
@@ -52,7 +52,7 @@ SolidId bindSolid(const TrackDef& track, const Flesh& flesh, const Flesh& orname
   for (std::size_t i = 0; i < flesh.solidCount(); ++i) {
     nearest.offer(flesh.def(SolidId{static_cast<std::int64_t>(i)}).name);
   }
-  diagnostics.error(pointer + "/solid", "unknown solid " + quoted(track.name), nearest.hint());
+  diagnostics.error(pointer + "/solid", "unknown solid " + quotedName(track.name), nearest.hint());
   return {};
 }
 
@@ -138,12 +138,13 @@ BoundClip bindSampled(std::shared_ptr<const SampledMotion> motion,
     const std::string parentName = parent.valid() ? skeleton.joint(parent).name : std::string();
     const int first = firstOfSix(skeleton, joint);
     if (first < 0 || parentName != frames[i].parent) {
-      diagnostics.error(pointer,
-                        "the joint " + quoted(frames[i].name) +
-                            (first < 0 ? " lacks some of its six degrees of freedom"
-                                       : " hangs from " + quoted(parentName) +
-                                             ", in the motion from " + quoted(frames[i].parent)),
-                        "imported motions need the rig's own joints; run 'fascia flesh' again");
+      diagnostics.error(
+          pointer,
+          "the joint " + quotedName(frames[i].name) +
+              (first < 0 ? " lacks some of its six degrees of freedom"
+                         : " hangs from " + quotedName(parentName) + ", in the motion from " +
+                               quotedName(frames[i].parent)),
+          "imported motions need the rig's own joints; run 'fascia flesh' again");
       continue;
     }
     const JointDef& def = skeleton.joint(joint);

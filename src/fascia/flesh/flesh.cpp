@@ -43,7 +43,7 @@ void validateNames(const FleshDef& def, const std::string& pointer, Diagnostics&
     if (name.empty()) {
       diagnostics.error(namePointer, "a solid needs a name");
     } else if (!fresh) {
-      diagnostics.error(namePointer, "a second solid named " + quoted(name),
+      diagnostics.error(namePointer, "a second solid named " + quotedName(name),
                         "the first is solid " + std::to_string(first->second));
     }
   }
@@ -125,7 +125,7 @@ void Flesh::addDrivers(const FleshSolidDef& def, const Solid& solid, const Skele
     validatePoints(driver, known ? &solid.parameterInfo(parameter) : nullptr, at + "/points",
                    diagnostics);
     if (known && !driven.try_emplace(parameter, k).second) {
-      diagnostics.error(at + "/parameter", "a second driver for " + quoted(driver.parameter),
+      diagnostics.error(at + "/parameter", "a second driver for " + quotedName(driver.parameter),
                         "the first is driver " + std::to_string(driven[parameter]));
     }
     if (!known || value < 0 || diagnostics.errors().size() > errorsBefore) continue;

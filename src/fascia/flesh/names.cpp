@@ -13,7 +13,7 @@ JointId resolveJoint(const Skeleton& skeleton, const std::string& name, const st
   for (std::size_t i = 0; i < skeleton.jointCount(); ++i) {
     nearest.offer(skeleton.joint(JointId{static_cast<std::int64_t>(i)}).name);
   }
-  diagnostics.error(pointer, "unknown joint " + quoted(name), nearest.hint());
+  diagnostics.error(pointer, "unknown joint " + quotedName(name), nearest.hint());
   return joint;
 }
 
@@ -26,7 +26,8 @@ int resolveDof(const Skeleton& skeleton, JointId joint, Dof dof, const std::stri
   for (const DofDef& own : def.dofs)
     owned += (owned.empty() ? "" : ", ") + std::string(name(own.dof));
   diagnostics.error(
-      pointer, "joint " + quoted(def.name) + " has no degree of freedom " + std::string(name(dof)),
+      pointer,
+      "joint " + quotedName(def.name) + " has no degree of freedom " + std::string(name(dof)),
       owned.empty() ? "it has none" : "it has " + owned);
   return value;
 }
@@ -42,7 +43,7 @@ int resolveParameter(const Solid& solid, const std::string& path, const std::str
     nearest.offer(own);
     known += (known.empty() ? "" : ", ") + own;
   }
-  diagnostics.error(pointer, "unknown parameter " + quoted(path),
+  diagnostics.error(pointer, "unknown parameter " + quotedName(path),
                     nearest.best().empty() ? "it has " + known : nearest.hint());
   return parameter;
 }

@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fascia/field/affine_points.h>
+#include <fascia/field/affine_kernels.h>
 #include <fascia/field/solid.h>
 #include <fascia/flesh/flesh_bound.h>
+#include <fascia/math/points.h>
 
 namespace fascia {
 namespace {
@@ -23,16 +24,6 @@ Mat3 crossMatrix(const Vec3& w) {
   Mat3 m;
   m << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
   return m;
-}
-
-Vec3 at(ConstVectors v, std::size_t i) {
-  return {v.x[i], v.y[i], v.z[i]};
-}
-
-void set(Vectors v, std::size_t i, const Vec3& value) {
-  v.x[i] = static_cast<float>(value.x());
-  v.y[i] = static_cast<float>(value.y());
-  v.z[i] = static_cast<float>(value.z());
 }
 
 // Whether the undeformed shapes of two states of one solid differ by a stretching along its axes.
@@ -147,8 +138,9 @@ void PosedFlesh::velocity(SolidId solid, ConstVectors points, Vectors velocity) 
   if (posed.behindToAhead_s == 0) return;
   const Transform localFromWorld = posed.world.inverse();
   for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 moved_m = movement(posed, localFromWorld.point(at(points, i)));
-    set(velocity, i, at(velocity, i) + posed.world.vector(moved_m / posed.behindToAhead_s));
+    const Vec3 moved_m = movement(posed, localFromWorld.point(pointAt(points, i)));
+    setPoint(velocity, i,
+             pointAt(velocity, i) + posed.world.vector(moved_m / posed.behindToAhead_s));
   }
 }
 

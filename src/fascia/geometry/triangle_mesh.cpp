@@ -19,6 +19,19 @@ void computeNormals(const std::vector<Eigen::Vector3f>& positions,
 }
 
 // Sum of the signed tetrahedra to a point near the mesh, which keeps the rounding small.
+std::vector<std::array<std::uint32_t, 2>> edgesBothWays(
+    std::span<const std::array<std::uint32_t, 3>> triangles) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  edges.reserve(6 * triangles.size());
+  for (const auto& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges.push_back({t[k], t[(k + 1) % 3]});
+      edges.push_back({t[(k + 1) % 3], t[k]});
+    }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
 double enclosedVolume(const TriangleMesh& mesh) {
   if (mesh.positions.empty()) return 0;
   const Vec3 origin = mesh.positions.front().cast<double>();

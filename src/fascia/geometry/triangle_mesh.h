@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <fascia/math/types.h>
@@ -21,6 +22,10 @@ struct TriangleMesh {
 void computeNormals(const std::vector<Eigen::Vector3f>& positions,
                     const std::vector<std::array<std::uint32_t, 3>>& triangles,
                     std::vector<Eigen::Vector3f>& normals);
+
+// Every edge both ways, as often as triangles run along it; increasing.
+std::vector<std::array<std::uint32_t, 2>> edgesBothWays(
+    std::span<const std::array<std::uint32_t, 3>> triangles);
 
 // Enclosed volume of a closed mesh by the divergence theorem.
 double enclosedVolume(const TriangleMesh& mesh);

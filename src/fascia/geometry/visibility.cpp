@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kSide = 128;  // lines of sight; 1 % of a joint's picture is seen
 
-using Triangle = std::array<Vec3, 3>;  // x, y on the screen in cells, z towards the viewer
+using ScreenTriangle = std::array<Vec3, 3>;  // x, y on the screen in cells, z towards the viewer
 
 // What is in front on every line of sight.
 class Screen {
@@ -16,7 +16,7 @@ class Screen {
   Screen()
       : depth_(static_cast<std::size_t>(kSide) * kSide, -HUGE_VAL), front_(depth_.size(), false) {}
 
-  void draw(const Triangle& t, bool isChosen) {
+  void draw(const ScreenTriangle& t, bool isChosen) {
     const double twice = turn(t[0], t[1], t[2].x(), t[2].y());
     if (!(std::abs(twice) > 0)) return;
     const auto [left, right] = std::minmax({t[0].x(), t[1].x(), t[2].x()});
@@ -35,7 +35,7 @@ class Screen {
     return (b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x());
   }
 
-  void visit(const Triangle& t, double twice, int x, int y, bool isChosen) {
+  void visit(const ScreenTriangle& t, double twice, int x, int y, bool isChosen) {
     const double px = x + 0.5, py = y + 0.5;
     const double u = turn(t[1], t[2], px, py) / twice, v = turn(t[2], t[0], px, py) / twice;
     if (u < 0 || v < 0 || u + v > 1) return;
@@ -68,7 +68,7 @@ double visibleArea(std::span<const std::array<std::uint32_t, 3>> surface,
   if (!(cell_m > 0)) return 0;
   Screen screen;
   for (std::size_t t = 0; t < surface.size(); ++t) {
-    Triangle corners;
+    ScreenTriangle corners;
     bool finite = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& p = seen[surface[t][k]];

@@ -25,7 +25,7 @@ namespace fascia {
 namespace {
 
 // What a stranger's file may cost us.
-constexpr std::size_t kMaxFileBytes = std::size_t{512} << 20;
+constexpr std::size_t kMaxAssimpBytes = std::size_t{512} << 20;
 constexpr std::size_t kMaxResultBytes = std::size_t{2} << 30;
 constexpr rlim_t kMaxSeconds = 120;
 constexpr rlim_t kMaxMemoryBytes = rlim_t{8} << 30;
@@ -133,7 +133,7 @@ bool isAssimpEnding(std::string_view ending) {
 }
 
 GltfDocument readWithAssimp(const std::string& path) {
-  readFile(path, kMaxFileBytes);  // tells what is missing, no file, or too large
+  readFile(path, kMaxAssimpBytes);  // tells what is missing, no file, or too large
   int ends[2];
   if (pipe(ends) != 0) throw Error(issueOf(path, std::string("no pipe: ") + std::strerror(errno)));
   const pid_t child = fork();

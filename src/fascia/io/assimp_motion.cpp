@@ -47,8 +47,8 @@ Quat turnAt(const aiQuatKey* keys, unsigned count, double time) {
   });
 }
 
-Affine channelAt(const aiNodeAnim& channel, double time) {
-  Affine out = Affine::Identity();
+AssimpFrame channelAt(const aiNodeAnim& channel, double time) {
+  AssimpFrame out = AssimpFrame::Identity();
   out.translate(vectorAt(channel.mPositionKeys, channel.mNumPositionKeys, time, Vec3::Zero()));
   out.rotate(turnAt(channel.mRotationKeys, channel.mNumRotationKeys, time));
   out.scale(vectorAt(channel.mScalingKeys, channel.mNumScalingKeys, time, Vec3::Ones()));
@@ -80,7 +80,7 @@ SampledMotion sample(const aiAnimation& animation, const AssimpNodes& nodes,
     const int node = nodes.find(animation.mChannels[c]->mNodeName.C_Str());
     if (node >= 0) channels.emplace_back(static_cast<std::size_t>(node), animation.mChannels[c]);
   }
-  std::vector<Affine> local, world;
+  std::vector<AssimpFrame> local, world;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     local.push_back(affineOf(nodes.node(n).mTransformation));
   }
@@ -115,7 +115,7 @@ AssimpNodes::AssimpNodes(const aiScene& scene, double unit_m) : unit_m_(unit_m) 
     byName_.try_emplace(node->mName.C_Str(), self);
     for (unsigned c = node->mNumChildren; c-- > 0;) open.emplace_back(node->mChildren[c], self);
   }
-  std::vector<Affine> local;
+  std::vector<AssimpFrame> local;
   for (const aiNode* node : nodes_) local.push_back(affineOf(node->mTransformation));
   pose(local, world_);
 }
@@ -125,22 +125,23 @@ int AssimpNodes::find(const std::string& name) const {
   return found == byName_.end() ? -1 : found->second;
 }
 
-void AssimpNodes::pose(const std::vector<Affine>& local, std::vector<Affine>& world) const {
+void AssimpNodes::pose(const std::vector<AssimpFrame>& local,
+                       std::vector<AssimpFrame>& world) const {
   world.resize(nodes_.size());
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    world[n] = parents_[n] < 0 ? Affine(Eigen::Scaling(unit_m_) * local[n])
+    world[n] = parents_[n] < 0 ? AssimpFrame(Eigen::Scaling(unit_m_) * local[n])
                                : world[static_cast<std::size_t>(parents_[n])] * local[n];
   }
 }
 
-Affine affineOf(const aiMatrix4x4& m) {
-  Affine out = Affine::Identity();
+AssimpFrame affineOf(const aiMatrix4x4& m) {
+  AssimpFrame out = AssimpFrame::Identity();
   out.matrix().topRows<3>() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3,
       m.c4;
   return out;
 }
 
-Transform rigidOf(const Affine& frame) {
+Transform rigidOf(const AssimpFrame& frame) {
   Transform out;
   out.translation_m = frame.translation();
   const double size = frame.linear().norm();

@@ -13,7 +13,7 @@ struct aiScene;
 
 namespace fascia {
 
-using Affine = Eigen::Affine3d;
+using AssimpFrame = Eigen::Affine3d;
 
 // Part of readWithAssimp(): the library's nodes in one list, parents first, in metres.
 class AssimpNodes {
@@ -23,22 +23,22 @@ class AssimpNodes {
   std::size_t size() const { return nodes_.size(); }
   const aiNode& node(std::size_t n) const { return *nodes_[n]; }
   int parent(std::size_t n) const { return parents_[n]; }
-  const Affine& world(std::size_t n) const { return world_[n]; }
+  const AssimpFrame& world(std::size_t n) const { return world_[n]; }
   int find(const std::string& name) const;  // -1: none
 
   // World frames for other frames of the nodes in their parents'.
-  void pose(const std::vector<Affine>& local, std::vector<Affine>& world) const;
+  void pose(const std::vector<AssimpFrame>& local, std::vector<AssimpFrame>& world) const;
 
  private:
   std::vector<const aiNode*> nodes_;
   std::vector<int> parents_;
-  std::vector<Affine> world_;
+  std::vector<AssimpFrame> world_;
   std::unordered_map<std::string, int> byName_;
   double unit_m_ = 1;
 };
 
-Affine affineOf(const aiMatrix4x4& matrix);
-Transform rigidOf(const Affine& frame);  // without scale and shear
+AssimpFrame affineOf(const aiMatrix4x4& matrix);
+Transform rigidOf(const AssimpFrame& frame);  // without scale and shear
 
 // All animations at a constant rate, as frames of the model's joints.
 std::vector<SampledMotion> sampleMotions(const aiScene& scene, const AssimpNodes& nodes,

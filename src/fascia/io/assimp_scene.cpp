@@ -13,6 +13,7 @@
 #include <fascia/base/error.h>
 #include <fascia/io/assimp_motion.h>
 #include <fascia/io/file.h>
+#include <fascia/io/image.h>
 #include <fascia/io/rig_import_surface.h>
 
 namespace fascia {
@@ -22,11 +23,6 @@ constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
 
 Eigen::Vector3f vectorOf(const aiVector3D& v) {
   return {v.x, v.y, v.z};
-}
-
-bool isPicture(const std::vector<std::uint8_t>& bytes) {
-  const std::string_view begin(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return begin.starts_with("\x89PNG") || begin.starts_with("\xFF\xD8\xFF");
 }
 
 // FBX says how many centimetres its unit is; the other formats are converted to metres.
@@ -41,9 +37,9 @@ double unitOf(const aiScene& scene) {
   return centimetres > 1e-6 && centimetres < 1e6 ? 0.01 * centimetres : 1;
 }
 
-class Assembler {
+class AssimpAssembler {
  public:
-  Assembler(const aiScene& scene, const std::string& path)
+  AssimpAssembler(const aiScene& scene, const std::string& path)
       : scene_(scene), path_(path), nodes_(scene, unitOf(scene)) {
     model_.name = std::filesystem::path(path).stem().string();
     model_.sourceFile = path;
@@ -64,7 +60,7 @@ class Assembler {
 
  private:
   void addJoints();
-  std::map<std::size_t, Affine> bindPoses() const;
+  std::map<std::size_t, AssimpFrame> bindPoses() const;
   void addMaterial(const aiMaterial& material);
   std::vector<std::uint8_t> pictureOf(const std::string& name) const;
   void addPart(std::size_t node, const aiMesh& mesh);
@@ -81,15 +77,15 @@ class Assembler {
 };
 
 // Where the skins say that their bones are: node -> frame in the world. The first mesh decides.
-std::map<std::size_t, Affine> Assembler::bindPoses() const {
-  std::map<std::size_t, Affine> poses;
+std::map<std::size_t, AssimpFrame> AssimpAssembler::bindPoses() const {
+  std::map<std::size_t, AssimpFrame> poses;
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const aiNode& node = nodes_.node(n);
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
       const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[m]];
       for (unsigned b = 0; b < mesh.mNumBones; ++b) {
         const int bone = nodes_.find(mesh.mBones[b]->mName.C_Str());
-        const Affine toBone = affineOf(mesh.mBones[b]->mOffsetMatrix);
+        const AssimpFrame toBone = affineOf(mesh.mBones[b]->mOffsetMatrix);
         if (bone < 0 || std::abs(toBone.linear().determinant()) < 1e-30) continue;
         poses.try_emplace(static_cast<std::size_t>(bone), nodes_.world(n) * toBone.inverse());
       }
@@ -99,8 +95,8 @@ std::map<std::size_t, Affine> Assembler::bindPoses() const {
 }
 
 // Every bone and all that it hangs on, up to the lowest node that holds all of them.
-void Assembler::addJoints() {
-  const std::map<std::size_t, Affine> poses = bindPoses();
+void AssimpAssembler::addJoints() {
+  const std::map<std::size_t, AssimpFrame> poses = bindPoses();
   if (poses.empty()) {
     Issue issue;
     issue.where.file = path_;
@@ -115,7 +111,7 @@ void Assembler::addJoints() {
     }
   }
   jointOfNode_.assign(nodes_.size(), -1);
-  std::vector<Affine> frames;
+  std::vector<AssimpFrame> frames;
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const int up = nodes_.parent(n);
     const int parent = up < 0 ? -1 : jointOfNode_[static_cast<std::size_t>(up)];
@@ -130,10 +126,10 @@ void Assembler::addJoints() {
     }
     if (bonesBelow[n] == 0 || (parent < 0 && !isLowest)) continue;
     const auto pose = poses.find(n);
-    const Affine frame = pose != poses.end() ? pose->second
-                         : parent >= 0       ? frames[static_cast<std::size_t>(parent)] *
-                                             affineOf(nodes_.node(n).mTransformation)
-                                       : nodes_.world(n);
+    const AssimpFrame frame = pose != poses.end() ? pose->second
+                              : parent >= 0       ? frames[static_cast<std::size_t>(parent)] *
+                                                  affineOf(nodes_.node(n).mTransformation)
+                                            : nodes_.world(n);
     jointOfNode_[n] = static_cast<int>(model_.joints.size());
     nodeOfJoint_.push_back(n);
     frames.push_back(frame);
@@ -141,7 +137,7 @@ void Assembler::addJoints() {
   }
 }
 
-std::vector<std::uint8_t> Assembler::pictureOf(const std::string& name) const {
+std::vector<std::uint8_t> AssimpAssembler::pictureOf(const std::string& name) const {
   std::vector<std::uint8_t> bytes;
   const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
   if (embedded && embedded->mHeight == 0) {  // as it was encoded
@@ -163,7 +159,7 @@ std::vector<std::uint8_t> Assembler::pictureOf(const std::string& name) const {
   return bytes;
 }
 
-void Assembler::addMaterial(const aiMaterial& material) {
+void AssimpAssembler::addMaterial(const aiMaterial& material) {
   RigMaterial out;
   aiString text;
   if (material.Get(AI_MATKEY_NAME, text) == AI_SUCCESS) out.name = text.C_Str();
@@ -185,7 +181,7 @@ void Assembler::addMaterial(const aiMaterial& material) {
   model_.materials.push_back(std::move(out));
 }
 
-void Assembler::addWeights(std::size_t node, const aiMesh& mesh) {
+void AssimpAssembler::addWeights(std::size_t node, const aiMesh& mesh) {
   std::vector<std::vector<std::pair<std::uint16_t, float>>> influences(mesh.mNumVertices);
   for (unsigned b = 0; b < mesh.mNumBones; ++b) {
     const aiBone& bone = *mesh.mBones[b];
@@ -214,14 +210,14 @@ void Assembler::addWeights(std::size_t node, const aiMesh& mesh) {
   }
 }
 
-void Assembler::addPart(std::size_t node, const aiMesh& mesh) {
+void AssimpAssembler::addPart(std::size_t node, const aiMesh& mesh) {
   RigPart part;
   part.name = nodes_.node(node).mName.C_Str();
   part.material = static_cast<int>(mesh.mMaterialIndex);
   part.firstVertex = static_cast<std::uint32_t>(model_.vertices.size());
   part.vertexCount = mesh.mNumVertices;
   part.firstTriangle = static_cast<std::uint32_t>(model_.drawnTriangles.size());
-  const Affine& world = nodes_.world(node);
+  const AssimpFrame& world = nodes_.world(node);
   const Eigen::Matrix3f toNormal = world.linear().inverse().transpose().cast<float>();
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     const Eigen::Vector3f place =
@@ -260,7 +256,7 @@ void Assembler::addPart(std::size_t node, const aiMesh& mesh) {
 }  // namespace
 
 RiggedModel rigFromAssimp(const aiScene& scene, const std::string& path) {
-  return Assembler(scene, path).build();
+  return AssimpAssembler(scene, path).build();
 }
 
 }  // namespace fascia

@@ -11,7 +11,7 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{512} << 20;
+constexpr std::size_t kMaxBvhBytes = std::size_t{512} << 20;
 
 struct Unit {
   const char* name;
@@ -78,7 +78,7 @@ bool positionIsAdded(const BvhJoint& joint, const float* firstFrame) {
 }  // namespace
 
 BvhMotion readBvh(const std::string& path) {
-  BvhMotion motion = parseBvh(readFileUnpacked(path, kMaxFileBytes), path);
+  BvhMotion motion = parseBvh(readFileUnpacked(path, kMaxBvhBytes), path);
   std::filesystem::path name = std::filesystem::path(path).filename();
   if (name.extension() == ".gz") name = name.stem();
   motion.name = name.stem().string();

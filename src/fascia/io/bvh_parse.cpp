@@ -12,7 +12,7 @@ namespace {
 
 // What a stranger's file may cost us.
 constexpr std::size_t kMaxJoints = 4096;
-constexpr double kLargest = 1e9;  // no length or angle in any unit is larger
+constexpr double kLargestValue = 1e9;  // no length or angle in any unit is larger
 constexpr double kLongestFrame_s = 1000;
 
 constexpr std::pair<std::string_view, BvhChannel> kChannels[] = {
@@ -69,7 +69,8 @@ class Words {
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !(std::abs(value) <= kLargest))
+    if (error != std::errc() || end != word.data() + word.size() ||
+        !(std::abs(value) <= kLargestValue))
       failFound(shown, what);
     return value;
   }
@@ -83,7 +84,7 @@ class Words {
   std::size_t bytesLeft() const { return left_.size(); }
 
   [[noreturn]] void failFound(std::string_view found, const std::string& expected) const {
-    fail(std::string("found ") + quoted(found) + ", expected " + expected);
+    fail(std::string("found ") + quotedName(found) + ", expected " + expected);
   }
   [[noreturn]] void fail(std::string message, std::string hint = {}) const {
     Issue issue;
@@ -136,8 +137,8 @@ class Parser {
       while (!names_.insert(joint.name).second) {
         joint.name = original + "_" + std::to_string(++renamed_);
       }
-      motion_.notes.push_back("two joints are called " + quoted(original) + ": one is now " +
-                              quoted(joint.name));
+      motion_.notes.push_back("two joints are called " + quotedName(original) + ": one is now " +
+                              quotedName(joint.name));
     }
     words_.expect("{");
     motion_.joints.push_back(std::move(joint));
@@ -180,7 +181,8 @@ class Parser {
   }
 
   void readChannels(BvhJoint& joint) {
-    if (!joint.channels.empty()) words_.fail("found a second CHANNELS of " + quoted(joint.name));
+    if (!joint.channels.empty())
+      words_.fail("found a second CHANNELS of " + quotedName(joint.name));
     const std::size_t count = words_.count("a number of channels");
     if (count > std::size(kChannels)) {
       words_.fail("found " + std::to_string(count) + " channels, expected at most 6");
@@ -196,7 +198,7 @@ class Parser {
                          "Xposition, Yposition, Zposition, Xrotation, Yrotation or Zrotation");
       }
       if (std::count(joint.channels.begin(), joint.channels.end(), found->second) > 0) {
-        words_.fail("found " + quoted(word) + " twice in " + quoted(joint.name));
+        words_.fail("found " + quotedName(word) + " twice in " + quotedName(joint.name));
       }
       joint.channels.push_back(found->second);
     }

@@ -26,6 +26,11 @@ class ByteWriter {
   void array(const T* data, std::size_t count) {
     bytes.append(reinterpret_cast<const char*>(data), count * sizeof(T));
   }
+  template <class T>
+  void list(const std::vector<T>& values) {  // how many, then they
+    value(static_cast<std::uint64_t>(values.size()));
+    array(values.data(), values.size());
+  }
   void text(std::string_view t) {
     value(static_cast<std::uint64_t>(t.size()));
     bytes.append(t);
@@ -53,6 +58,10 @@ class ByteReader {
     const std::string_view part = take(static_cast<std::size_t>(count) * sizeof(T));
     out.resize(static_cast<std::size_t>(count));
     if (count > 0) std::memcpy(static_cast<void*>(out.data()), part.data(), part.size());
+  }
+  template <class T>
+  void list(std::vector<T>& out) {
+    array(out, value<std::uint64_t>());
   }
   std::string text() {
     const auto size = value<std::uint64_t>();

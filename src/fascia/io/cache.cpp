@@ -15,20 +15,9 @@ namespace {
 // motion; the rig if the character has one (version 2 and later); how many numbers the soft solids'
 // shapes are (version 3); rate, loop; the mesh; per frame time, posture, shapes, positions as
 // float32; stats.
-constexpr std::string_view kMagic("FCACHE\x1a\n", 8);
+constexpr std::string_view kCacheMagic("FCACHE\x1a\n", 8);
 constexpr std::uint32_t kPlainVersion = 1, kRigVersion = 2, kSoftVersion = 3;
-constexpr std::size_t kMaxFileBytes = std::size_t{8} << 30;
-
-template <class T>
-void writeArray(ByteWriter& out, const std::vector<T>& values) {
-  out.value(static_cast<std::uint64_t>(values.size()));
-  out.array(values.data(), values.size());
-}
-
-template <class T>
-void readArray(ByteReader& in, std::vector<T>& values) {
-  in.array(values, in.value<std::uint64_t>());
-}
+constexpr std::size_t kMaxCacheBytes = std::size_t{8} << 30;
 
 template <class Vector>
 void checkFinite(const ByteReader& in, const std::vector<Vector>& values) {
@@ -42,18 +31,18 @@ void checkFinite(const ByteReader& in, double value) {
 }
 
 void writeMesh(ByteWriter& out, const TriangleMesh& mesh) {
-  writeArray(out, mesh.positions);
-  writeArray(out, mesh.normals);
-  writeArray(out, mesh.uvs);
-  writeArray(out, mesh.triangles);
+  out.list(mesh.positions);
+  out.list(mesh.normals);
+  out.list(mesh.uvs);
+  out.list(mesh.triangles);
 }
 
 TriangleMesh readMesh(ByteReader& in) {
   TriangleMesh mesh;
-  readArray(in, mesh.positions);
-  readArray(in, mesh.normals);
-  readArray(in, mesh.uvs);
-  readArray(in, mesh.triangles);
+  in.list(mesh.positions);
+  in.list(mesh.normals);
+  in.list(mesh.uvs);
+  in.list(mesh.triangles);
   const std::size_t count = mesh.positions.size();
   const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
   if (!fits(mesh.normals.size()) || !fits(mesh.uvs.size())) in.fail("has a mesh of unequal parts");
@@ -69,7 +58,7 @@ TriangleMesh readMesh(ByteReader& in) {
 }
 
 template <class Stats, class Visit>
-void eachStat(Stats& s, const Visit& visit) {
+void eachSkinStat(Stats& s, const Visit& visit) {
   visit(s.steps), visit(s.rejected_steps), visit(s.step_min_s), visit(s.step_max_s);
   visit(s.forces_s), visit(s.constraints_s), visit(s.other_s), visit(s.max_penetration_m);
   visit(s.max_edge_stretch), visit(s.repaired_points);
@@ -108,7 +97,7 @@ Recording::Frame readFrame(ByteReader& in, std::size_t postureSize, std::size_t 
 }  // namespace
 
 bool isCache(std::string_view bytes) {
-  return bytes.starts_with(kMagic);
+  return bytes.starts_with(kCacheMagic);
 }
 
 namespace {
@@ -119,7 +108,7 @@ void putCache(const CharacterDef& def, const Recording& recording, const Texture
   const std::size_t postureSize = valueCount(def);
   if (def.rig && !def.rig->model) throw Error("the character's rig was not read from its file");
   ByteWriter head;
-  head.bytes = kMagic;
+  head.bytes = kCacheMagic;
   const std::size_t shapes = shapeSize(recording);
   head.value(versionOf(def, recording));
   head.text(characterText(def));
@@ -147,7 +136,7 @@ void putCache(const CharacterDef& def, const Recording& recording, const Texture
     put(out.bytes);
   }
   ByteWriter tail;
-  eachStat(recording.stats, [&](const auto& value) { tail.value(value); });
+  eachSkinStat(recording.stats, [&](const auto& value) { tail.value(value); });
   tail.value(recording.wall_s);
   tail.value(recording.simulated_s);
   tail.value(recording.state_hash);
@@ -173,7 +162,7 @@ std::string cacheBytes(const CharacterDef& def, const Recording& recording,
 Cache parseCache(std::string_view bytes, const std::string& file) {
   ByteReader in(bytes, file);
   if (!isCache(bytes)) in.fail("is not a Fascia cache");
-  in.take(kMagic.size());
+  in.take(kCacheMagic.size());
   const auto version = in.value<std::uint32_t>();
   if (version < kPlainVersion || version > kSoftVersion) {
     in.fail("has cache format " + std::to_string(version) + ", this program reads up to format " +
@@ -205,8 +194,8 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   for (std::uint64_t f = 0; f < frames; ++f) {
     recording.frames.push_back(readFrame(in, postureSize, shapes, recording.skin.positions.size()));
   }
-  eachStat(recording.stats,
-           [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });
+  eachSkinStat(recording.stats,
+               [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });
   recording.wall_s = in.value<double>();
   recording.simulated_s = in.value<double>();
   recording.state_hash = in.value<std::uint64_t>();
@@ -215,7 +204,7 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
 }
 
 std::string readCacheBytes(const std::string& path) {
-  return readFile(path, kMaxFileBytes);
+  return readFile(path, kMaxCacheBytes);
 }
 
 Cache readCache(const std::string& path) {

@@ -12,17 +12,6 @@
 #include <fascia/base/error.h>
 
 namespace fascia {
-namespace {
-
-Error fileError(const std::string& path, const std::string& message) {
-  Issue issue;
-  issue.where.file = path;
-  issue.message = message;
-  return Error(std::move(issue));
-}
-
-}  // namespace
-
 std::string readFile(const std::string& path, std::size_t maxBytes) {
   // O_NONBLOCK: opening a named pipe would wait for a writer for ever.
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

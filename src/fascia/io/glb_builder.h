@@ -13,10 +13,12 @@
 
 namespace fascia {
 
+using GltfJson = nlohmann::ordered_json;  // keeps the order of members
+
 // Collects a binary glTF 2.0: the JSON tree and the bytes that its accessors point into.
 class GlbBuilder {
  public:
-  using Json = nlohmann::ordered_json;
+  using Json = GltfJson;
   enum class Target { none = 0, vertices = 34962, indices = 34963 };
 
   GlbBuilder();

@@ -11,8 +11,6 @@
 namespace fascia {
 namespace {
 
-using GltfJson = GlbBuilder::Json;
-
 // Of the largest solid's radius: as near chords stay to a solid's roundness. A claw needs fewer
 // segments than a belly.
 constexpr double kRoundness = 1e-3;

@@ -13,7 +13,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kExtension = "KHR_draco_mesh_compression";
+constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 
 // Reads how many faces the data promise, before the decoder makes room for them. Only the version
 // of the format that glTF allows (2.2). False: no such data.
@@ -142,7 +142,7 @@ Attribute unpackAttribute(const GltfPlace& root, const GltfPlace& id, const Gltf
 }
 
 UnpackedPrimitive unpackPrimitive(const GltfDocument& document, const GltfPlace& primitive) {
-  const GltfPlace root = document.root(), packed = primitive["extensions"][kExtension];
+  const GltfPlace root = document.root(), packed = primitive["extensions"][kDracoExtension];
   const int view = packed["bufferView"].index(static_cast<int>(root["bufferViews"].size()));
   const std::unique_ptr<draco::Mesh> mesh = decodeMesh(document.viewBytes(view), packed);
   const GltfPlace ids = packed["attributes"];
@@ -174,10 +174,10 @@ void GltfDocument::unpackCompressedMeshes() {
     const std::size_t primitives = root()["meshes"].at(m)["primitives"].size();
     for (std::size_t p = 0; p < primitives; ++p) {
       const GltfPlace place = root()["meshes"].at(m)["primitives"].at(p);
-      if (place["extensions"][kExtension]) unpackMesh(m, p);
+      if (place["extensions"][kDracoExtension]) unpackMesh(m, p);
     }
   }
-  forgetExtension(kExtension);
+  forgetExtension(kDracoExtension);
 }
 
 void GltfDocument::unpackMesh(std::size_t mesh, std::size_t primitive) {
@@ -200,7 +200,7 @@ void GltfDocument::unpackMesh(std::size_t mesh, std::size_t primitive) {
   putMember(entry, "indices", indices);
   eraseMember(entry, "mode");  // strips come out as triangles
   Json* extensions = findMember(entry, "extensions");
-  eraseMember(*extensions, kExtension);
+  eraseMember(*extensions, kDracoExtension);
   if (extensions->object().empty()) eraseMember(entry, "extensions");
 }
 

@@ -8,7 +8,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kExtension = "EXT_meshopt_compression";
+constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 
 struct PackedView {
   std::span<const std::uint8_t> data;
@@ -64,7 +64,7 @@ std::vector<std::uint8_t> unpack(const PackedView& view, const GltfPlace& place)
 void GltfDocument::unpackCompressedViews() {
   const std::size_t count = root()["bufferViews"].size();
   for (std::size_t i = 0; i < count; ++i) {
-    const GltfPlace place = root()["bufferViews"].at(i)["extensions"][kExtension];
+    const GltfPlace place = root()["bufferViews"].at(i)["extensions"][kMeshoptExtension];
     if (!place) continue;
     const int buffer = place["buffer"].index(static_cast<int>(buffers_.size()));
     PackedView view;
@@ -77,14 +77,14 @@ void GltfDocument::unpackCompressedViews() {
     std::vector<std::uint8_t> data = unpack(view, place);
     Json& entry = findMember(json_, "bufferViews")->list()[i];
     Json* extensions = findMember(entry, "extensions");
-    eraseMember(*extensions, kExtension);
+    eraseMember(*extensions, kMeshoptExtension);
     if (extensions->object().empty()) eraseMember(entry, "extensions");
     putMember(entry, "byteOffset", 0);
     putMember(entry, "byteLength", Json::Number{std::to_string(data.size())});
     const int unpacked = addBuffer(std::move(data));  // `entry` may have moved
     putMember(findMember(json_, "bufferViews")->list()[i], "buffer", unpacked);
   }
-  forgetExtension(kExtension);
+  forgetExtension(kMeshoptExtension);
 }
 
 void GltfDocument::forgetExtension(std::string_view name) {

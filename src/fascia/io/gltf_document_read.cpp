@@ -11,9 +11,9 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{2} << 30;  // of a file or of a buffer beside it
+constexpr std::size_t kMostGltfBytes = std::size_t{2} << 30;  // of a file or of a buffer beside it
 constexpr JsonLimits kLimits{std::size_t{1} << 29, 4'000'000, 64};
-constexpr std::string_view kMagic = "glTF";
+constexpr std::string_view kGlbMagic = "glTF";
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
 struct Chunks {
@@ -22,7 +22,7 @@ struct Chunks {
 
 Chunks glbChunks(std::string_view bytes, const std::string& path) {
   ByteReader reader(bytes, path);
-  reader.take(kMagic.size());
+  reader.take(kGlbMagic.size());
   const auto version = reader.value<std::uint32_t>();
   if (version != 2) reader.fail("is glTF version " + std::to_string(version) + ", expected 2");
   const auto length = reader.value<std::uint32_t>();
@@ -77,14 +77,14 @@ void checkVersion(const GltfPlace& root) {
 }  // namespace
 
 GltfDocument GltfDocument::read(const std::string& path) {
-  return parse(readFile(path, kMostBytes), path);
+  return parse(readFile(path, kMostGltfBytes), path);
 }
 
 GltfDocument GltfDocument::parse(std::string_view bytes, const std::string& path) {
   GltfDocument document;
   document.path_ = path;
   Chunks chunks{bytes, {}};
-  if (bytes.starts_with(kMagic)) chunks = glbChunks(bytes, path);
+  if (bytes.starts_with(kGlbMagic)) chunks = glbChunks(bytes, path);
   std::vector<Issue> issues;
   document.json_ = parseJson(chunks.json, kLimits, issues);
   for (Issue& issue : issues) issue.where.file = path;
@@ -132,7 +132,7 @@ std::vector<std::uint8_t> GltfDocument::dataOf(const std::string& uri,
   }
   try {
     const std::string file = insideFolder(folderOf(path_), name, "a part of the glTF", "");
-    const std::string bytes = readFile(file, kMostBytes);
+    const std::string bytes = readFile(file, kMostGltfBytes);
     return {bytes.begin(), bytes.end()};
   } catch (const Error& error) {
     place.fail(error.issues().front().message, error.issues().front().hint);

@@ -11,7 +11,7 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();  // of a .glb
+constexpr std::size_t kMostGlbBytes = std::numeric_limits<std::uint32_t>::max();  // of a .glb
 
 void appendJson(const Json& value, std::string& out) {
   switch (value.kind()) {
@@ -141,7 +141,7 @@ std::string glbOf(const Json& json, std::string binary, const std::string& path)
   text.resize((text.size() + 3) / 4 * 4, ' ');
   binary.resize((binary.size() + 3) / 4 * 4);
   const std::size_t total = 12 + 8 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
-  if (total > kMostBytes) {
+  if (total > kMostGlbBytes) {
     Issue issue;
     issue.where.file = path;
     issue.message = "would be larger than 4 GiB, which the format cannot hold";

@@ -8,8 +8,6 @@
 namespace fascia {
 namespace {
 
-using GltfJson = GlbBuilder::Json;
-
 constexpr int kWhole = 65535;  // weights are told in parts of it
 
 // Rounded so that they sum to the whole exactly, as glTF demands: the heaviest takes the rest.

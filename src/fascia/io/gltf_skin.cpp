@@ -8,7 +8,6 @@
 namespace fascia {
 namespace {
 
-using GltfJson = GlbBuilder::Json;
 using Positions = std::vector<Eigen::Vector3f>;
 
 // IEC 61966-2-1.

@@ -10,8 +10,6 @@
 namespace fascia {
 namespace {
 
-using GltfJson = GlbBuilder::Json;
-
 std::vector<PlaceTrack> jointTracks(const Skeleton& skeleton, const Recording& recording) {
   std::vector<PlaceTrack> tracks(skeleton.jointCount());
   Posture posture = skeleton.restPosture();

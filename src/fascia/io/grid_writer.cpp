@@ -14,8 +14,6 @@
 namespace fascia {
 namespace {
 
-using GltfJson = GlbBuilder::Json;
-
 // Of the skin's size: what dropped keys of a bone may move the surface. An order below what a fit
 // leaves.
 constexpr double kKeyError = 1e-5;

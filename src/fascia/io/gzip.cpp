@@ -11,18 +11,12 @@
 namespace fascia {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& message) {
-  Issue issue;
-  issue.where.file = path;
-  issue.message = message;
-  throw Error(std::move(issue));
-}
-
 // Unpacks all members of a gzip file (RFC 1952 allows several, one after the other).
 std::string unpack(std::string& packed, const std::string& path, std::size_t maxBytes) {
   constexpr int kGzipOnly = 15 + 16;  // largest window; zlib's sign for a gzip header
   z_stream stream{};
-  if (inflateInit2(&stream, kGzipOnly) != Z_OK) fail(path, "cannot be unpacked: out of memory");
+  if (inflateInit2(&stream, kGzipOnly) != Z_OK)
+    throw fileError(path, "cannot be unpacked: out of memory");
   const std::unique_ptr<z_stream, void (*)(z_stream*)> end(&stream,
                                                            [](z_stream* s) { inflateEnd(s); });
   std::string bytes;
@@ -35,18 +29,18 @@ std::string unpack(std::string& packed, const std::string& path, std::size_t max
     stream.next_out = reinterpret_cast<Bytef*>(buffer);
     stream.avail_out = sizeof buffer;
     const int result = inflate(&stream, Z_NO_FLUSH);
-    if (result != Z_OK && result != Z_STREAM_END) fail(path, "is a damaged gzip file");
+    if (result != Z_OK && result != Z_STREAM_END) throw fileError(path, "is a damaged gzip file");
     taken += portion - stream.avail_in;
     bytes.append(buffer, sizeof buffer - stream.avail_out);
     if (bytes.size() > maxBytes) {
-      fail(path, "is larger than " + std::to_string(maxBytes) + " bytes when unpacked");
+      throw fileError(path, "is larger than " + std::to_string(maxBytes) + " bytes when unpacked");
     }
     if (result == Z_STREAM_END) {
       if (taken == packed.size()) return bytes;
       inflateReset(&stream);
     }
   }
-  fail(path, "is a gzip file that is cut short");
+  throw fileError(path, "is a gzip file that is cut short");
 }
 
 }  // namespace

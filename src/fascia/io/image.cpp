@@ -1,6 +1,8 @@
 #include <fascia/io/image.h>
 
+#include <algorithm>
 #include <cstring>
+#include <initializer_list>
 
 #include <png.h>
 
@@ -11,20 +13,13 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = 256u << 20;
-
-[[noreturn]] void fail(const std::string& file, const std::string& message) {
-  Issue issue;
-  issue.where.file = file;
-  issue.message = message;
-  throw Error(std::move(issue));
-}
+constexpr std::size_t kMaxImageBytes = 256u << 20;
 
 void checkSize(const std::string& file, std::size_t width, std::size_t height) {
   if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide ||
       width * height > kMaxImagePixels) {
-    fail(file, "a picture of " + std::to_string(width) + " x " + std::to_string(height) +
-                   " pixels is not read");
+    throw fileError(file, "a picture of " + std::to_string(width) + " x " + std::to_string(height) +
+                              " pixels is not read");
   }
 }
 
@@ -33,7 +28,7 @@ Image decodePng(std::string_view bytes, const std::string& file) {
   std::memset(&reader, 0, sizeof reader);
   reader.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_memory(&reader, bytes.data(), bytes.size())) {
-    fail(file, std::string("not a good PNG: ") + reader.message);
+    throw fileError(file, std::string("not a good PNG: ") + reader.message);
   }
   Image image;
   try {
@@ -47,12 +42,19 @@ Image decodePng(std::string_view bytes, const std::string& file) {
     throw;
   }
   if (!png_image_finish_read(&reader, nullptr, image.rgba.data(), 0, nullptr)) {
-    fail(file, std::string("not a good PNG: ") + reader.message);
+    throw fileError(file, std::string("not a good PNG: ") + reader.message);
   }
   return image;
 }
 
 }  // namespace
+
+bool isPicture(const std::vector<std::uint8_t>& bytes) {
+  const auto begins = [&](std::initializer_list<std::uint8_t> magic) {
+    return bytes.size() > magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
+  };
+  return begins({0x89, 'P', 'N', 'G'}) || begins({0xFF, 0xD8, 0xFF});
+}
 
 ImageFormat imageFormat(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return ImageFormat::png;
@@ -92,18 +94,18 @@ Image decodeImage(std::string_view bytes, const std::string& file) {
     case ImageFormat::jpeg:
       break;
     case ImageFormat::unknown:
-      fail(file, "neither a PNG nor a JPEG");
+      throw fileError(file, "neither a PNG nor a JPEG");
   }
   Image image;
   std::string message;
-  if (!jpegSize(bytes, image.width, image.height, message)) fail(file, message);
+  if (!jpegSize(bytes, image.width, image.height, message)) throw fileError(file, message);
   checkSize(file, static_cast<std::size_t>(image.width), static_cast<std::size_t>(image.height));
-  if (!decodeJpeg(bytes, image, message)) fail(file, message);
+  if (!decodeJpeg(bytes, image, message)) throw fileError(file, message);
   return image;
 }
 
 Image readImage(const std::string& path) {
-  return decodeImage(readFile(path, kMaxFileBytes), path);
+  return decodeImage(readFile(path, kMaxImageBytes), path);
 }
 
 }  // namespace fascia

@@ -23,6 +23,8 @@ void writePng(const Image& image, const std::string& path);  // whole or not at 
 enum class ImageFormat { unknown, png, jpeg };
 ImageFormat imageFormat(std::string_view bytes);  // by the first bytes, not by a name
 
+bool isPicture(const std::vector<std::uint8_t>& bytes);  // begins like a PNG or a JPEG
+
 // PNG or JPEG, told apart by content. Throws Error; `file` is what messages call it.
 Image decodeImage(std::string_view bytes, const std::string& file = {});
 Image readImage(const std::string& path);

@@ -7,7 +7,7 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxJointMapBytes = std::size_t{4} << 20;
 
 JointMap fromJson(std::string_view text, const std::string& file) {
   std::vector<Issue> issues;
@@ -43,7 +43,7 @@ JointMap jointMapOf(std::string_view text, const std::string& file) {
 }
 
 JointMap readJointMap(const std::string& path) {
-  return jointMapOf(readFile(path, kMaxFileBytes), path);
+  return jointMapOf(readFile(path, kMaxJointMapBytes), path);
 }
 
 }  // namespace fascia

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
+constexpr std::size_t kMaxMeshBytes = std::size_t{256} << 20;
 constexpr double kDecimetre_m = 0.1;  // the unit of MakeHuman's meshes
 
 // The first that exists: CMU's names fit most motion capture; MakeHuman's own has a face.
@@ -77,9 +77,10 @@ Transform restFrame(const MakeHumanBone& bone, double unit_m) {
   return frame;
 }
 
-class Assembler {
+class MakeHumanAssembler {
  public:
-  Assembler(const ObjMesh& mesh, const MakeHumanRig& rig, double scale) : mesh_(mesh), rig_(rig) {
+  MakeHumanAssembler(const ObjMesh& mesh, const MakeHumanRig& rig, double scale)
+      : mesh_(mesh), rig_(rig) {
     unit_m_ = kDecimetre_m * scale;
     double floor = 1e300;
     for (const KeptGroup& kept : kGroups) {
@@ -122,7 +123,7 @@ class Assembler {
   std::map<std::pair<std::uint32_t, std::int32_t>, std::uint32_t> vertexOf_;
 };
 
-std::uint32_t Assembler::vertexFor(const ObjMesh::Corner& corner) {
+std::uint32_t MakeHumanAssembler::vertexFor(const ObjMesh::Corner& corner) {
   const auto [found, isNew] = vertexOf_.try_emplace(
       {corner.position, corner.uv}, static_cast<std::uint32_t>(model_.vertices.size()));
   if (!isNew) return found->second;
@@ -142,7 +143,7 @@ std::uint32_t Assembler::vertexFor(const ObjMesh::Corner& corner) {
   return found->second;
 }
 
-void Assembler::addPart(const KeptGroup& kept, const ObjMesh::Group& group) {
+void MakeHumanAssembler::addPart(const KeptGroup& kept, const ObjMesh::Group& group) {
   vertexOf_.clear();  // parts share no vertices
   RigPart part;
   part.name = kept.shown;
@@ -170,7 +171,7 @@ void Assembler::addPart(const KeptGroup& kept, const ObjMesh::Group& group) {
 }
 
 // Smooth across UV seams: of the mesh's points, not of the vertices that they were cut into.
-void Assembler::setNormals() {
+void MakeHumanAssembler::setNormals() {
   std::vector<Eigen::Vector3f> points(mesh_.positions.size());
   for (std::size_t p = 0; p < points.size(); ++p) points[p] = mesh_.positions[p].cast<float>();
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -203,9 +204,9 @@ RiggedModel readMakeHuman(const std::string& path, const RigImportOptions& optio
     issue.hint = std::string("expected one of MakeHuman's, as ") + kRigs.front();
     throw Error(std::move(issue));
   }
-  const ObjMesh parsed = parseObj(readFileUnpacked(mesh.string(), kMaxFileBytes), mesh.string());
+  const ObjMesh parsed = parseObj(readFileUnpacked(mesh.string(), kMaxMeshBytes), mesh.string());
   const MakeHumanRig bones = readMakeHumanRig(rig.string(), parsed);
-  RiggedModel model = Assembler(parsed, bones, options.scale).build();
+  RiggedModel model = MakeHumanAssembler(parsed, bones, options.scale).build();
   model.name = "MakeHuman";
   model.sourceFile = path;
   return model;

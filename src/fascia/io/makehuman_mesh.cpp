@@ -11,7 +11,7 @@
 namespace fascia {
 namespace {
 
-constexpr double kLargest = 1e6;
+constexpr double kLargestNumber = 1e6;
 
 class ObjParser {
  public:
@@ -80,8 +80,9 @@ class ObjParser {
     const std::string_view text = word();
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= kLargest))
-      fail(std::string("found ") + quoted(text) + ", expected a number");
+    if (error != std::errc() || end != text.data() + text.size() ||
+        !(std::abs(value) <= kLargestNumber))
+      fail(std::string("found ") + quotedName(text) + ", expected a number");
     return value;
   }
 
@@ -92,7 +93,7 @@ class ObjParser {
     const std::int64_t size = static_cast<std::int64_t>(count);
     if (value < 0 && value >= -size) value += size + 1;
     if (error != std::errc() || end != text.data() + text.size() || value < 1 || value > size) {
-      fail(std::string("found ") + quoted(text) + ", expected an index from 1 to " +
+      fail(std::string("found ") + quotedName(text) + ", expected an index from 1 to " +
            std::to_string(count));
     }
     return static_cast<std::uint32_t>(value - 1);

@@ -13,14 +13,14 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxRigBytes = std::size_t{64} << 20;
 constexpr std::size_t kMaxBones = 4096;
 
 Json readJson(const std::string& path) {
   JsonLimits limits;
-  limits.bytes = kMaxFileBytes;
+  limits.bytes = kMaxRigBytes;
   std::vector<Issue> issues;
-  Json json = parseJson(readFileUnpacked(path, kMaxFileBytes), limits, issues);
+  Json json = parseJson(readFileUnpacked(path, kMaxRigBytes), limits, issues);
   for (Issue& issue : issues) issue.where.file = path;
   if (!issues.empty()) throw Error(std::move(issues));
   return json;
@@ -33,8 +33,8 @@ class Reader {
 
   const Json& member(const Json& object, std::string_view key, Json::Kind kind) const {
     const Json* value = object.find(key);
-    if (!value) fail(object, std::string("has no ") + fascia::quoted(key));
-    if (!value->is(kind)) fail(*value, fascia::quoted(key) + " is of the wrong kind");
+    if (!value) fail(object, std::string("has no ") + quotedName(key));
+    if (!value->is(kind)) fail(*value, quotedName(key) + " is of the wrong kind");
     return *value;
   }
   std::size_t index(const Json& value, std::size_t count) const {
@@ -73,7 +73,7 @@ Vec3 endOf(const Json& end, const ObjMesh& mesh, const Reader& reader) {
     const Json& name = reader.member(end, "cube_name", Json::Kind::text);
     const ObjMesh::Group* cube = mesh.find(name.text());
     if (!cube || cube->corners.empty()) {
-      reader.fail(name, std::string("the mesh has no group ") + fascia::quoted(name.text()));
+      reader.fail(name, std::string("the mesh has no group ") + quotedName(name.text()));
     }
     return middleOf(mesh, *cube);
   }
@@ -83,7 +83,7 @@ Vec3 endOf(const Json& end, const ObjMesh& mesh, const Reader& reader) {
     const Json& vertex = reader.member(end, "vertex_index", Json::Kind::number);
     return mesh.positions[reader.index(vertex, mesh.positions.size())];
   }
-  reader.fail(end, std::string("found strategy ") + fascia::quoted(strategy) +
+  reader.fail(end, std::string("found strategy ") + quotedName(strategy) +
                        ", expected CUBE, MEAN or VERTEX");
 }
 
@@ -196,7 +196,7 @@ void readWeights(const std::string& path, const ObjMesh& mesh, MakeHumanRig& rig
   for (const Json::Member& member : reader.member(json, "weights", Json::Kind::object).object()) {
     const auto bone = bones.find(member.key);
     if (bone == bones.end()) {
-      reader.fail(member.value, std::string("weights of ") + fascia::quoted(member.key) +
+      reader.fail(member.value, std::string("weights of ") + quotedName(member.key) +
                                     ", which is no bone of the rig");
     }
     if (!member.value.is(Json::Kind::list)) reader.fail(member.value, "expected a list of weights");

@@ -11,7 +11,7 @@ namespace fascia {
 namespace {
 
 // int32 frames, int32 points, float times[frames], float positions[frames][points][3].
-constexpr std::size_t kMaxFileBytes = std::size_t{8} << 30;
+constexpr std::size_t kMaxMddBytes = std::size_t{8} << 30;
 
 std::uint32_t swapped(std::uint32_t v) {
   return (v >> 24) | ((v >> 8) & 0xff00u) | ((v << 8) & 0xff0000u) | (v << 24);
@@ -84,7 +84,7 @@ MddCache parseMdd(std::string_view bytes, const std::string& file) {
 }
 
 MddCache readMdd(const std::string& path) {
-  return parseMdd(readFile(path, kMaxFileBytes), path);
+  return parseMdd(readFile(path, kMaxMddBytes), path);
 }
 
 }  // namespace fascia

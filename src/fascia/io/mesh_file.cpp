@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fascia/base/index.h>
 #include <fascia/geometry/weld.h>
 #include <fascia/io/gltf_triangles.h>
 #include <fascia/io/rig_gltf.h>
@@ -10,10 +11,6 @@
 
 namespace fascia {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The meshes of a scene that no skin moves, where its nodes put them.
 class SurfaceReader {

@@ -9,9 +9,9 @@ namespace fascia {
 namespace {
 
 // The header: "POINTCACHE2\0", int32 version, int32 points, float start, float rate, int32 samples.
-constexpr std::string_view kMagic("POINTCACHE2\0", 12);
-constexpr std::int32_t kVersion = 1;
-constexpr std::size_t kMaxFileBytes = std::size_t{8} << 30;
+constexpr std::string_view kPc2Magic("POINTCACHE2\0", 12);
+constexpr std::int32_t kPc2Version = 1;
+constexpr std::size_t kMaxPc2Bytes = std::size_t{8} << 30;
 
 }  // namespace
 
@@ -23,8 +23,8 @@ void writePc2(const Recording& recording, const std::string& path) {
     }
   }
   ByteWriter header;
-  header.bytes = kMagic;
-  header.value(kVersion);
+  header.bytes = kPc2Magic;
+  header.value(kPc2Version);
   header.value(static_cast<std::int32_t>(points));
   header.value(0.0f);
   header.value(1.0f);
@@ -39,9 +39,9 @@ void writePc2(const Recording& recording, const std::string& path) {
 
 PointCache parsePc2(std::string_view bytes, const std::string& file) {
   ByteReader reader(bytes, file);
-  if (!bytes.starts_with(kMagic)) reader.fail("is not a PC2 point cache");
-  reader.take(kMagic.size());
-  if (reader.value<std::int32_t>() != kVersion) reader.fail("has an unknown PC2 version");
+  if (!bytes.starts_with(kPc2Magic)) reader.fail("is not a PC2 point cache");
+  reader.take(kPc2Magic.size());
+  if (reader.value<std::int32_t>() != kPc2Version) reader.fail("has an unknown PC2 version");
   const auto points = reader.value<std::int32_t>();
   PointCache cache;
   cache.startFrame = reader.value<float>();
@@ -59,7 +59,7 @@ PointCache parsePc2(std::string_view bytes, const std::string& file) {
 }
 
 PointCache readPc2(const std::string& path) {
-  return parsePc2(readFile(path, kMaxFileBytes), path);
+  return parsePc2(readFile(path, kMaxPc2Bytes), path);
 }
 
 }  // namespace fascia

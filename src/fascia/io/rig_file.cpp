@@ -6,13 +6,13 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kPointer = "/rig/file";
+constexpr const char* kRigPointer = "/rig/file";
 
 }  // namespace
 
 std::shared_ptr<const RiggedModel> loadRig(const CharacterDef& def) {
   if (!def.rig) return nullptr;
-  const std::string place = insideFolder(def.folder, def.rig->file, "the rig", kPointer);
+  const std::string place = insideFolder(def.folder, def.rig->file, "the rig", kRigPointer);
   try {
     return std::make_shared<const RiggedModel>(
         readRiggedModel(place, RigImportOptions{.scale = def.rig->scale}));
@@ -21,7 +21,7 @@ std::shared_ptr<const RiggedModel> loadRig(const CharacterDef& def) {
     std::vector<Issue> issues;
     for (const Issue& fault : error.issues()) {
       Issue issue;
-      issue.where.pointer = kPointer;
+      issue.where.pointer = kRigPointer;
       issue.message = "the rig " + fault.text();
       issues.push_back(std::move(issue));
     }

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include <fascia/base/index.h>
 #include <fascia/io/rig_import_surface.h>
 
 namespace fascia {
 namespace {
 
 constexpr double kSamePlace = 1e-3;  // of the skeleton's size, and of a unit axis
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // What a skin says, checked.
 struct RawSkin {

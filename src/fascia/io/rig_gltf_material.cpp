@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include <fascia/io/image.h>
 #include <fascia/io/rig_gltf_mesh.h>
 
 namespace fascia {
@@ -18,13 +19,6 @@ void readColor(const GltfPlace& place, std::array<float, 4>& color) {
   if (!place) return;
   if (place.size() != 4) place.fail("is no colour: expected four numbers");
   for (std::size_t i = 0; i < 4; ++i) color[i] = factor(place.at(i), 1, kBrightest);
-}
-
-bool isPicture(const std::vector<std::uint8_t>& bytes) {
-  const auto begins = [&](std::initializer_list<std::uint8_t> magic) {
-    return bytes.size() > magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
-  };
-  return begins({0x89, 'P', 'N', 'G'}) || begins({0xFF, 0xD8, 0xFF});
 }
 
 // The place of the base colour's texture; the old extension for glossy materials is still met.

@@ -4,16 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include <fascia/base/index.h>
 #include <fascia/geometry/box_tree.h>
 #include <fascia/io/gltf_triangles.h>
 #include <fascia/io/rig_import_surface.h>
 
 namespace fascia {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // What was mended, over all primitives; told once.
 struct Mended {

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include <fascia/base/index.h>
 #include <fascia/io/rig_gltf_clip.h>
 
 namespace fascia {
@@ -13,10 +14,6 @@ namespace {
 constexpr double kMostJointFrames = 5e6;  // 28 bytes each
 constexpr double kSlowest_hz = 1;         // a motion that would be coarser is left out
 constexpr double kMostClipNodes = 2e7;    // clips times nodes: every clip begins with all nodes
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The joints' nodes and those above them, parents first: no other moves a joint.
 std::vector<int> nodesAboveJoints(const GltfScene& scene, const GltfRig& rig) {

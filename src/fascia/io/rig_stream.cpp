@@ -9,17 +9,6 @@ namespace {
 // Eigen's vectors and our structs of them lie without gaps.
 static_assert(sizeof(RigVertex) == 24 && sizeof(PointWeights) == 48);
 
-template <class T>
-void writeArray(const std::vector<T>& values, ByteWriter& out) {
-  out.value(static_cast<std::uint64_t>(values.size()));
-  out.array(values.data(), values.size());
-}
-
-template <class T>
-void readArray(ByteReader& in, std::vector<T>& values) {
-  in.array(values, in.value<std::uint64_t>());
-}
-
 // A list of things of unequal length; each takes a byte at least, which bounds the count.
 template <class T, class ReadOne>
 void readList(ByteReader& in, std::vector<T>& list, const ReadOne& readOne) {
@@ -53,8 +42,8 @@ void writeMotion(const SampledMotion& motion, ByteWriter& out) {
   out.value(static_cast<std::uint8_t>(motion.loop));
   out.value(static_cast<std::uint64_t>(motion.joints.size()));
   for (const std::string& joint : motion.joints) out.text(joint);
-  writeArray(motion.rotation, out);
-  writeArray(motion.translation_m, out);
+  out.list(motion.rotation);
+  out.list(motion.translation_m);
 }
 
 SampledMotion readMotion(ByteReader& in) {
@@ -63,8 +52,8 @@ SampledMotion readMotion(ByteReader& in) {
   motion.rate_hz = in.value<double>();
   motion.loop = in.value<std::uint8_t>() != 0;
   readList(in, motion.joints, [](ByteReader& from) { return from.text(); });
-  readArray(in, motion.rotation);
-  readArray(in, motion.translation_m);
+  in.list(motion.rotation);
+  in.list(motion.translation_m);
   const std::size_t frames = motion.frameCount();
   require(motion.rate_hz > 0 && motion.rate_hz < 1e6 && frames > 0 &&
               motion.rotation.size() == frames * motion.joints.size() &&
@@ -102,7 +91,7 @@ void writeMaterial(const RigMaterial& material, ByteWriter& out) {
   out.value(material.roughness);
   out.value(material.metallic);
   out.value(static_cast<std::uint8_t>(material.doubleSided));
-  writeArray(material.texture, out);
+  out.list(material.texture);
 }
 
 RigMaterial readMaterial(ByteReader& in) {
@@ -112,7 +101,7 @@ RigMaterial readMaterial(ByteReader& in) {
   material.roughness = in.value<float>();
   material.metallic = in.value<float>();
   material.doubleSided = in.value<std::uint8_t>() != 0;
-  readArray(in, material.texture);
+  in.list(material.texture);
   for (const float c : material.color) require(std::isfinite(c), in, "a colour that is none");
   require(std::isfinite(material.roughness) && std::isfinite(material.metallic), in,
           "a material out of range");
@@ -189,13 +178,13 @@ void writeRig(const RiggedModel& model, std::string_view motion, ByteWriter& out
     writeTransform(joint.rest_world, out);
     out.value(joint.node);
   }
-  writeArray(model.points_m, out);
-  writeArray(model.weights, out);
-  writeArray(model.triangles, out);
-  writeArray(model.component, out);
+  out.list(model.points_m);
+  out.list(model.weights);
+  out.list(model.triangles);
+  out.list(model.component);
   out.value(model.componentCount);
-  writeArray(model.vertices, out);
-  writeArray(model.drawnTriangles, out);
+  out.list(model.vertices);
+  out.list(model.drawnTriangles);
   out.value(static_cast<std::uint64_t>(model.parts.size()));
   for (const RigPart& part : model.parts) writePart(part, out);
   out.value(static_cast<std::uint64_t>(model.materials.size()));
@@ -211,13 +200,13 @@ RiggedModel readRig(ByteReader& in) {
   model.name = in.text();
   model.sourceFile = in.text();
   readList(in, model.joints, readJoint);
-  readArray(in, model.points_m);
-  readArray(in, model.weights);
-  readArray(in, model.triangles);
-  readArray(in, model.component);
+  in.list(model.points_m);
+  in.list(model.weights);
+  in.list(model.triangles);
+  in.list(model.component);
   model.componentCount = in.value<std::uint32_t>();
-  readArray(in, model.vertices);
-  readArray(in, model.drawnTriangles);
+  in.list(model.vertices);
+  in.list(model.drawnTriangles);
   readList(in, model.parts, readPart);
   readList(in, model.materials, readMaterial);
   readList(in, model.motions, readMotion);

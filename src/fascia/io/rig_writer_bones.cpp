@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include <fascia/base/index.h>
 #include <fascia/io/rig_writer_geometry.h>
 #include <fascia/io/rig_writer_motion.h>
 #include <fascia/io/rig_writer_others.h>
@@ -21,16 +22,12 @@ constexpr std::size_t kKeptPoses = 45;
 // Helpers' keys in other motions are at most so dense; else they are where the joints' own are.
 constexpr double kOthersRate_hz = 30;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 bool isSimilarity(const Mat3& m) {
   const Mat3 gram = m.transpose() * m;
   return (gram - gram.trace() / 3 * Mat3::Identity()).norm() < 1e-4 * gram.norm();
 }
 
-Json numbers(const Vec3& v) {
+Json shortNumbers(const Vec3& v) {
   Json::List list;
   for (const double c : {v.x(), v.y(), v.z()}) {
     list.emplace_back(Json::Number{shortestDigits(static_cast<float>(c))});
@@ -189,7 +186,7 @@ class BoneWriter {
     bind_world.translation() = helper.center_m;
     Json json{Json::Object{}};
     json.set("name", freshName());
-    json.set("translation", numbers(out.parent.inverse() * helper.center_m));
+    json.set("translation", shortNumbers(out.parent.inverse() * helper.center_m));
     if (out.anchor < 0) {
       out.node = source_.addTopNode(std::move(json));
     } else {

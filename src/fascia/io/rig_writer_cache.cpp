@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include <fascia/base/index.h>
 #include <fascia/io/gltf_document_accessor.h>
 #include <fascia/io/mdd.h>
 #include <fascia/io/pc2.h>
@@ -12,10 +13,6 @@
 
 namespace fascia {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // A mesh as importers count its vertices: primitive after primitive, without vertices that no
 // triangle uses.

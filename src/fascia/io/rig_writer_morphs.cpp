@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include <fascia/base/index.h>
 #include <fascia/io/rig_writer_geometry.h>
 #include <fascia/io/rig_writer_motion.h>
 #include <fascia/io/rig_writer_others.h>
@@ -8,10 +9,6 @@
 
 namespace fascia {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::size_t listSize(const Json* list) {
   return list && list->is(Json::Kind::list) ? list->list().size() : 0;

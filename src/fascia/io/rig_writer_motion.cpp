@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include <fascia/base/index.h>
 #include <fascia/io/rig_gltf_clip.h>
 #include <fascia/io/rig_writer_player.h>
 
@@ -15,10 +16,6 @@ constexpr double kSameMotion = 2e-3;
 // The same for the file's keys as they play, and how far a joint may be turned (sine, about): more
 // would be the larger part of a bake's error.
 constexpr double kPlayedShift = 3e-4, kPlayedTurn = 2e-3;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::vector<float> frameTimes(const RigClip& clip, float start_s) {
   std::vector<float> times;
@@ -123,7 +120,7 @@ Vec3 scaleOf(const GltfNode& node) {
   return (scale.array().abs() < 1e-9).select(Vec3::Ones(), scale);
 }
 
-Json numbers(std::initializer_list<double> values) {
+Json numberList(std::initializer_list<double> values) {
   Json::List list;
   for (const double v : values) list.emplace_back(v);
   return list;
@@ -138,9 +135,9 @@ void splitMatrix(RigSource& source, int n, const Vec3& scale) {
       rotationOf(node.matrix.linear() * scale.cwiseInverse().asDiagonal(), Mat3::Identity()));
   Json& json = source.node(n);
   eraseMember(json, "matrix");
-  putMember(json, "translation", numbers({t.x(), t.y(), t.z()}));
-  putMember(json, "rotation", numbers({q.x(), q.y(), q.z(), q.w()}));
-  putMember(json, "scale", numbers({scale.x(), scale.y(), scale.z()}));
+  putMember(json, "translation", numberList({t.x(), t.y(), t.z()}));
+  putMember(json, "rotation", numberList({q.x(), q.y(), q.z(), q.w()}));
+  putMember(json, "scale", numberList({scale.x(), scale.y(), scale.z()}));
 }
 
 void addJointChannels(RigSource& source, const RigClip& clip, const BakedAnimation& animation) {

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/index.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 int accessorOf(const GltfDocument& document, const GltfPlace& place) {
   return place.index(static_cast<int>(document.root()["accessors"].size()));

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include <fascia/base/index.h>
 #include <fascia/base/suggest.h>
 #include <fascia/io/rig_to_gltf.h>
 #include <fascia/rig/blend_skinning.h>
@@ -11,12 +12,8 @@
 namespace fascia {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
-[[noreturn]] void fail(const RigClip& clip, const std::string& message,
-                       const std::string& hint = {}) {
+[[noreturn]] void refuseClip(const RigClip& clip, const std::string& message,
+                             const std::string& hint = {}) {
   Issue issue;
   issue.where.file = clip.model.sourceFile;
   issue.message = message;
@@ -27,18 +24,18 @@ std::size_t at(int i) {
 void checkClip(const RigClip& clip) {
   const auto& frames = clip.recording.frames;
   if (frames.empty() || clip.joints_world.size() != frames.size()) {
-    fail(clip, "the recording and the joints need the same frames, at least one");
+    refuseClip(clip, "the recording and the joints need the same frames, at least one");
   }
   for (std::size_t f = 0; f < frames.size(); ++f) {
     if (frames[f].skin_m.size() != clip.model.vertices.size() ||
         clip.joints_world[f].size() != clip.model.joints.size()) {
-      fail(clip, "the recording is of another character");
+      refuseClip(clip, "the recording is of another character");
     }
     for (const Eigen::Vector3f& p : frames[f].skin_m) {
-      if (!p.allFinite()) fail(clip, "the recording has vertices that are no numbers");
+      if (!p.allFinite()) refuseClip(clip, "the recording has vertices that are no numbers");
     }
     if (!std::isfinite(frames[f].time_s) || (f > 0 && frames[f].time_s <= frames[f - 1].time_s)) {
-      fail(clip, "the recording's times do not increase");
+      refuseClip(clip, "the recording's times do not increase");
     }
   }
 }
@@ -55,14 +52,14 @@ void checkUnchanged(const RigSource& source) {
   for (const RigPart& part : model.parts) {
     if (!same || part.node < 0 || at(part.node) >= source.scene.nodes.size() ||
         source.scene.nodes[at(part.node)].mesh != part.mesh) {
-      fail(source.clip, "has changed since the character was imported", hint);
+      refuseClip(source.clip, "has changed since the character was imported", hint);
     }
     const GltfPlace position =
         meshes.at(at(part.mesh))["primitives"].at(at(part.primitive))["attributes"]["POSITION"];
     const auto accessors = static_cast<int>(source.document.root()["accessors"].size());
     same = source.document.elementCount(position.index(accessors)) == part.vertexCount;
   }
-  if (!same) fail(source.clip, "has changed since the character was imported", hint);
+  if (!same) refuseClip(source.clip, "has changed since the character was imported", hint);
 }
 
 // A blend of the skin's places, for skins whose bind poses disagree.
@@ -128,7 +125,8 @@ RigSource RigSource::open(std::span<const RigClip> clips) {
     checkClip(c);
     for (const RigClip& before : clips) {
       if (&before == &c) break;
-      if (before.motion == c.motion) fail(c, "two motions to bake are named " + quoted(c.motion));
+      if (before.motion == c.motion)
+        refuseClip(c, "two motions to bake are named " + quotedName(c.motion));
     }
   }
   RigSource source{clips, clip, readAsGltf(clip.model.sourceFile), {}, {}, {}};

@@ -12,25 +12,23 @@ namespace {
 
 // Layout, little-endian: magic, u32 version; the scene file's text; per character its own cache;
 // per body made of a mesh the mesh; rate; per frame time and bodies; what the script said; stats.
-constexpr std::string_view kMagic("FSCENE\x1a\n", 8);
-constexpr std::uint32_t kVersion = 1;
+constexpr std::string_view kSceneMagic("FSCENE\x1a\n", 8);
+constexpr std::uint32_t kSceneVersion = 1;
 
 template <class Stats, class Visit>
-void eachStat(Stats& s, const Visit& visit) {
+void eachBodyStat(Stats& s, const Visit& visit) {
   visit(s.steps), visit(s.iterations), visit(s.halved), visit(s.unconverged), visit(s.stopped);
 }
 
-void writeMesh(ByteWriter& out, const TriangleMesh& mesh) {
-  out.value(static_cast<std::uint64_t>(mesh.positions.size()));
-  out.array(mesh.positions.data(), mesh.positions.size());
-  out.value(static_cast<std::uint64_t>(mesh.triangles.size()));
-  out.array(mesh.triangles.data(), mesh.triangles.size());
+void writeBodyMesh(ByteWriter& out, const TriangleMesh& mesh) {
+  out.list(mesh.positions);
+  out.list(mesh.triangles);
 }
 
-std::shared_ptr<const TriangleMesh> readMesh(ByteReader& in) {
+std::shared_ptr<const TriangleMesh> readBodyMesh(ByteReader& in) {
   auto mesh = std::make_shared<TriangleMesh>();
-  in.array(mesh->positions, in.value<std::uint64_t>());
-  in.array(mesh->triangles, in.value<std::uint64_t>());
+  in.list(mesh->positions);
+  in.list(mesh->triangles);
   for (const Eigen::Vector3f& p : mesh->positions)
     if (!p.allFinite()) in.fail("holds a value that is not a finite number");
   for (const auto& triangle : mesh->triangles)
@@ -54,7 +52,7 @@ SceneDef readScene(ByteReader& in, const std::string& file, std::vector<Texture>
     recordings.push_back(std::move(cache.recording));
   }
   for (SceneBodyDef& body : def.bodies)
-    if (hasMesh(body)) body.mesh = readMesh(in);
+    if (hasMesh(body)) body.mesh = readBodyMesh(in);
   return def;
 }
 
@@ -76,13 +74,13 @@ void readFrames(ByteReader& in, std::size_t coordinates, StageRecording& out) {
 void writeSceneCache(const Stage& stage, const StageRecording& recording, const std::string& path) {
   const SceneDef& def = stage.def();
   ByteWriter out;
-  out.bytes = kMagic;
-  out.value(kVersion);
+  out.bytes = kSceneMagic;
+  out.value(kSceneVersion);
   out.text(sceneText(def));
   for (std::size_t i = 0; i < def.characters.size(); ++i)
     out.text(cacheBytes(def.characters[i].character->def(), recording.characters[i]));
   for (const SceneBodyDef& body : def.bodies)
-    if (hasMesh(body)) writeMesh(out, *body.mesh);
+    if (hasMesh(body)) writeBodyMesh(out, *body.mesh);
   out.value(recording.frame_rate_hz);
   out.value(static_cast<std::uint64_t>(recording.frames.size()));
   for (const StageRecording::Frame& frame : recording.frames) {
@@ -93,7 +91,7 @@ void writeSceneCache(const Stage& stage, const StageRecording& recording, const 
   }
   out.value(static_cast<std::uint8_t>(recording.outcome));
   out.text(recording.reason);
-  eachStat(recording.bodies, [&](const auto& value) { out.value(value); });
+  eachBodyStat(recording.bodies, [&](const auto& value) { out.value(value); });
   out.value(recording.wall_s);
   out.value(recording.simulated_s);
   out.value(recording.state_hash);
@@ -103,11 +101,11 @@ void writeSceneCache(const Stage& stage, const StageRecording& recording, const 
 SceneCache parseSceneCache(std::string_view bytes, const std::string& file) {
   ByteReader in(bytes, file);
   if (!isSceneCache(bytes)) in.fail("is not a Fascia scene cache");
-  in.take(kMagic.size());
+  in.take(kSceneMagic.size());
   const auto version = in.value<std::uint32_t>();
-  if (version != kVersion)
+  if (version != kSceneVersion)
     in.fail("has scene cache format " + std::to_string(version) + ", this program reads format " +
-            std::to_string(kVersion));
+            std::to_string(kSceneVersion));
   std::vector<Texture> textures;
   std::vector<Recording> characters;
   SceneDef def = readScene(in, file, textures, characters);
@@ -126,8 +124,8 @@ SceneCache parseSceneCache(std::string_view bytes, const std::string& file) {
     in.fail("has an outcome that is none");
   recording.outcome = static_cast<ScriptOutcome>(kind);
   recording.reason = in.text();
-  eachStat(recording.bodies,
-           [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });
+  eachBodyStat(recording.bodies,
+               [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });
   recording.wall_s = in.value<double>();
   recording.simulated_s = in.value<double>();
   recording.state_hash = in.value<std::uint64_t>();
@@ -136,7 +134,7 @@ SceneCache parseSceneCache(std::string_view bytes, const std::string& file) {
 }
 
 bool isSceneCache(std::string_view bytes) {
-  return bytes.starts_with(kMagic);
+  return bytes.starts_with(kSceneMagic);
 }
 
 }  // namespace fascia

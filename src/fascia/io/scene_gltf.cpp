@@ -12,7 +12,6 @@
 namespace fascia {
 namespace {
 
-using GltfJson = GlbBuilder::Json;
 constexpr float kUnseen_m = 1e-6f;  // morph targets that move nothing farther are left out
 
 // The rotation nearest to a deformation gradient.

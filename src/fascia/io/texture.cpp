@@ -6,7 +6,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kPointer = "/skin/texture";
+constexpr const char* kTexturePointer = "/skin/texture";
 constexpr std::size_t kMaxBytes = 64u << 20;
 
 }  // namespace
@@ -18,15 +18,15 @@ const char* Texture::mimeType() const {
 Texture loadTexture(const CharacterDef& def) {
   if (!def.skin || def.skin->texture.empty()) return {};
   const std::string& name = def.skin->texture;
-  const std::string place = insideFolder(def.folder, name, "the texture", kPointer);
+  const std::string place = insideFolder(def.folder, name, "the texture", kTexturePointer);
   Texture texture;
   try {
     texture.bytes = readFile(place, kMaxBytes);
   } catch (const Error& error) {
-    throw errorAt(kPointer, "the texture " + error.issues().front().text());
+    throw errorAt(kTexturePointer, "the texture " + error.issues().front().text());
   }
   if (imageFormat(texture.bytes) == ImageFormat::unknown)
-    throw errorAt(kPointer, "the texture is neither a PNG nor a JPEG: " + name);
+    throw errorAt(kTexturePointer, "the texture is neither a PNG nor a JPEG: " + name);
   return texture;
 }
 

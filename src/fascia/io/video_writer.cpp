@@ -25,13 +25,6 @@ bool isGif(const std::string& path) {
   return ending == ".gif";
 }
 
-[[noreturn]] void fail(const std::string& file, const std::string& message) {
-  Issue issue;
-  issue.where.file = file;
-  issue.message = message;
-  throw Error(std::move(issue));
-}
-
 }  // namespace
 
 class VideoWriter::Sink {
@@ -86,15 +79,15 @@ class VideoWriter::Encoder final : public Sink {
   void add(const Image& frame) override {
     if (process_->write(frame.rgba.data(), frame.rgba.size())) return;
     process_->finish();
-    fail(path_, "the video cannot be encoded: " + process_->complaints());
+    throw fileError(path_, "the video cannot be encoded: " + process_->complaints());
   }
   void finish() override {
     if (!process_->finish()) {
-      fail(path_, "the video cannot be encoded: " + process_->complaints());
+      throw fileError(path_, "the video cannot be encoded: " + process_->complaints());
     }
     std::error_code error;
     fs::rename(temporary_, path_, error);
-    if (error) fail(path_, "cannot be put in its place: " + error.message());
+    if (error) throw fileError(path_, "cannot be put in its place: " + error.message());
     done_ = true;
   }
   bool encodes() const override { return true; }
@@ -114,10 +107,11 @@ class VideoWriter::PngSequence final : public Sink {
     if (!file.has_extension()) folder_ += "-frames";
     temporary_ = folder_ + ".tmp";
     std::error_code error;
-    if (fs::exists(folder_, error)) fail(folder_, "is in the way of the picture sequence");
+    if (fs::exists(folder_, error))
+      throw fileError(folder_, "is in the way of the picture sequence");
     fs::remove_all(temporary_, error);
     if (!fs::create_directories(temporary_, error)) {
-      fail(temporary_, "cannot be made: " + error.message());
+      throw fileError(temporary_, "cannot be made: " + error.message());
     }
     hint = "the program " + options.encoder + " was not found, so the frames are PNG files in " +
            folder_ + "; to join them: ffmpeg -framerate " + decimal(options.frame_rate_hz) +
@@ -136,7 +130,7 @@ class VideoWriter::PngSequence final : public Sink {
   void finish() override {
     std::error_code error;
     fs::rename(temporary_, folder_, error);
-    if (error) fail(folder_, "cannot be put in its place: " + error.message());
+    if (error) throw fileError(folder_, "cannot be put in its place: " + error.message());
     done_ = true;
   }
   bool encodes() const override { return false; }
@@ -152,11 +146,11 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height,
     : width_(width), height_(height) {
   if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide ||
       !(options.frame_rate_hz > 0 && options.frame_rate_hz <= 1000)) {
-    fail(path, "a video of this size or frame rate cannot be written");
+    throw fileError(path, "a video of this size or frame rate cannot be written");
   }
   std::error_code error;
   const fs::path folder = fs::absolute(path, error).parent_path();
-  if (!fs::is_directory(folder, error)) fail(path, "the folder is missing");
+  if (!fs::is_directory(folder, error)) throw fileError(path, "the folder is missing");
   const std::string temporary = path + ".tmp";
   if (std::optional<ChildProcess> process = ChildProcess::start(
           options.encoder, Encoder::arguments(width, height, options, temporary, isGif(path)))) {

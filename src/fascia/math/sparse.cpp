@@ -11,31 +11,6 @@
 namespace fascia {
 namespace {
 
-// The places of a compressed matrix's entries, to tell whether the ordering can be kept.
-class Pattern {
- public:
-  bool matches(const SparseMatrix& a) const {
-    return rows_ == a.rows() && std::ranges::equal(outer_, outer(a)) &&
-           std::ranges::equal(inner_, inner(a));
-  }
-  void assign(const SparseMatrix& a) {
-    rows_ = a.rows();
-    outer_.assign(outer(a).begin(), outer(a).end());
-    inner_.assign(inner(a).begin(), inner(a).end());
-  }
-
- private:
-  using Indices = std::span<const SparseMatrix::StorageIndex>;
-  static Indices outer(const SparseMatrix& a) {
-    return {a.outerIndexPtr(), static_cast<std::size_t>(a.outerSize()) + 1};
-  }
-  static Indices inner(const SparseMatrix& a) {
-    return {a.innerIndexPtr(), static_cast<std::size_t>(a.nonZeros())};
-  }
-  Eigen::Index rows_ = -1;
-  std::vector<SparseMatrix::StorageIndex> outer_, inner_;
-};
-
 bool allFinite(const SparseMatrix& a) {
   return std::all_of(a.valuePtr(), a.valuePtr() + a.nonZeros(),
                      [](double x) { return std::isfinite(x); });
@@ -44,6 +19,31 @@ bool allFinite(const SparseMatrix& a) {
 }  // namespace
 
 struct SparseFactorization::Impl {
+  // The places of a compressed matrix's entries, to tell whether the ordering can be kept.
+  class Pattern {
+   public:
+    bool matches(const SparseMatrix& a) const {
+      return rows_ == a.rows() && std::ranges::equal(outer_, outer(a)) &&
+             std::ranges::equal(inner_, inner(a));
+    }
+    void assign(const SparseMatrix& a) {
+      rows_ = a.rows();
+      outer_.assign(outer(a).begin(), outer(a).end());
+      inner_.assign(inner(a).begin(), inner(a).end());
+    }
+
+   private:
+    using Indices = std::span<const SparseMatrix::StorageIndex>;
+    static Indices outer(const SparseMatrix& a) {
+      return {a.outerIndexPtr(), static_cast<std::size_t>(a.outerSize()) + 1};
+    }
+    static Indices inner(const SparseMatrix& a) {
+      return {a.innerIndexPtr(), static_cast<std::size_t>(a.nonZeros())};
+    }
+    Eigen::Index rows_ = -1;
+    std::vector<SparseMatrix::StorageIndex> outer_, inner_;
+  };
+
   enum class Ready { none, cholesky, lu };
   MatrixKind kind;
   Ready ready = Ready::none;

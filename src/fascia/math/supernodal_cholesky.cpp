@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include <fascia/base/index.h>
 #include <fascia/base/parallel.h>
 #include <fascia/math/cholesky/multifrontal.h>
 #include <fascia/math/cholesky/nested_dissection.h>
@@ -14,10 +15,6 @@
 
 namespace fascia {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 constexpr int floatsPerRow(int sides) {
   return sides == 1 ? 1 : 4;

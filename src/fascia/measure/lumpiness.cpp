@@ -1,34 +1,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/geometry/triangle_mesh.h>
 #include <fascia/measure/best_rotation.h>
 #include <fascia/measure/deformation.h>
 #include <fascia/measure/percentile.h>
 
 namespace fascia {
-namespace {
-
-using Edge = std::array<std::uint32_t, 2>;
-
-// Every edge both ways, as often as triangles run along it; increasing.
-std::vector<Edge> edgesBothWays(TriangleList triangles) {
-  std::vector<Edge> edges;
-  edges.reserve(6 * triangles.size());
-  for (const auto& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      edges.push_back({t[k], t[(k + 1) % 3]});
-      edges.push_back({t[(k + 1) % 3], t[k]});
-    }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
-}  // namespace
-
 RestDetail::RestDetail(TriangleList triangles, PointList rest)
     : rest_(rest.begin(), rest.end()), edge_m_(rest.size(), 0) {
   computeNormals(rest_, {triangles.begin(), triangles.end()}, normal_);
-  const std::vector<Edge> edges = edgesBothWays(triangles);
+  const std::vector<std::array<std::uint32_t, 2>> edges = edgesBothWays(triangles);
   first_.assign(1, 0);
   auto it = edges.begin();
   for (std::uint32_t p = 0; p < rest.size(); ++p) {

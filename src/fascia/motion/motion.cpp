@@ -105,9 +105,10 @@ void validateUniqueTracks(const MotionDef& motion, const std::string& pointer,
     const TrackDef& track = motion.tracks[i];
     const auto [earlier, fresh] = seen.try_emplace({track.target, track.name, track.channel}, i);
     if (fresh) continue;
-    diagnostics.error(pointer + "/tracks/" + std::to_string(i),
-                      "a second track for " + quoted(track.name) + ", " + quoted(track.channel),
-                      "the first is track " + std::to_string(earlier->second));
+    diagnostics.error(
+        pointer + "/tracks/" + std::to_string(i),
+        "a second track for " + quotedName(track.name) + ", " + quotedName(track.channel),
+        "the first is track " + std::to_string(earlier->second));
   }
 }
 

@@ -3,8 +3,8 @@
 namespace fascia {
 namespace {
 
-constexpr std::uint8_t kRings = 6;
-constexpr int kPasses = 8;
+constexpr std::uint8_t kDentRings = 6;
+constexpr int kDentPasses = 8;
 
 // The skin's points within a solid's bounds, in world space.
 void gather(const Box& bounds, const Vec3& origin_m, std::span<const Vector4f> position,
@@ -48,7 +48,7 @@ void pressOut(const Field& field, SolidId solid, std::span<Vector4f> position, D
 void giveWay(const PoseMesh& mesh, std::span<Vector4f> position, Dents::Scratch& s) {
   const std::size_t pressed = s.active.size();
   std::size_t begin = 0;
-  for (std::uint8_t ring = 2; ring <= kRings; ++ring) {
+  for (std::uint8_t ring = 2; ring <= kDentRings; ++ring) {
     const std::size_t end = s.active.size();
     for (; begin < end; ++begin)
       for (const PoseMesh::Edge& e : mesh.around(s.active[begin])) {
@@ -58,7 +58,7 @@ void giveWay(const PoseMesh& mesh, std::span<Vector4f> position, Dents::Scratch&
         s.active.push_back(e.to);
       }
   }
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kDentPasses; ++pass) {
     for (std::size_t k = pressed; k < s.active.size(); ++k) {
       Vector4f sum = Vector4f::Zero();
       float total = 1e-9f;

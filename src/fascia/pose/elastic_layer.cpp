@@ -10,7 +10,7 @@ namespace fascia {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kChunk = 512;
+constexpr std::size_t kBendsPerTask = 512;
 // ℓ in local radii for tightness 0 and 1. Shorter than 0.25: folds cross again; longer than 0.8:
 // twisted limbs lose a third of their volume.
 constexpr float kLoose = 0.3f, kTight = 0.94f;
@@ -135,13 +135,13 @@ void ElasticLayer::relax(std::span<const WideRotation> rotation, std::span<Vecto
   if (solved_.empty()) return;
   scratch.residual.resize(bent_.size());
   for (std::vector<float>* a : {&scratch.x, &scratch.y, &scratch.z}) a->resize(solved_.size());
-  parallelFor((bent_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    bend(rotation, position, kChunk * chunk, std::min(bent_.size(), kChunk * (chunk + 1)),
-         scratch.residual);
+  parallelFor((bent_.size() + kBendsPerTask - 1) / kBendsPerTask, [&](std::size_t chunk) {
+    bend(rotation, position, kBendsPerTask * chunk,
+         std::min(bent_.size(), kBendsPerTask * (chunk + 1)), scratch.residual);
   });
-  parallelFor((solved_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(solved_.size(), kChunk * (chunk + 1));
-    for (std::size_t k = kChunk * chunk; k < end; ++k) {
+  parallelFor((solved_.size() + kBendsPerTask - 1) / kBendsPerTask, [&](std::size_t chunk) {
+    const std::size_t end = std::min(solved_.size(), kBendsPerTask * (chunk + 1));
+    for (std::size_t k = kBendsPerTask * chunk; k < end; ++k) {
       Vector4f sum = Vector4f::Zero();
       for (std::uint32_t q = firstEdge_[k]; q < firstEdge_[k + 1]; ++q) {
         const std::uint32_t to = bentOf_[edges_[q].to];

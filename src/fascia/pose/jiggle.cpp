@@ -12,13 +12,13 @@
 namespace fascia {
 namespace {
 
-constexpr float kSpacing = 0.9f;  // of nodes, in local radii
-constexpr float kReach = 2.2f;    // of a node's weight, in spacings
-constexpr float kDamping = 0.2f;  // ζ: a shake has died away after about four swings
-constexpr float kLimit = 0.3f;    // largest offset at full dial, in local radii
+constexpr float kSpacing = 0.9f;    // of nodes, in local radii
+constexpr float kNodeReach = 2.2f;  // of a node's weight, in spacings
+constexpr float kDamping = 0.2f;    // ζ: a shake has died away after about four swings
+constexpr float kLimit = 0.3f;      // largest offset at full dial, in local radii
 constexpr float kLeastSoft = 0.05f;
 constexpr float kLeastShare = 0.005f;  // of a node in a point: less is not seen, but costs time
-constexpr std::size_t kChunk = 512;
+constexpr std::size_t kJigglesPerTask = 512;
 // A limb of 3 % of a figure of 1.7 m swings 7 times a second; thicker ones and larger figures
 // slower, as √(1 / length).
 constexpr float kFrequency_Hz = 7, kAtRadius = 0.03f, kAtSize_m = 1.7f;
@@ -87,7 +87,7 @@ void Jiggle::placeNodes(const PoseMesh& mesh, const LimbParts& parts,
   std::vector<char> covered(mesh.size(), 0);
   for (const std::uint32_t i : order) {
     if (covered[i] || softness[i] < kLeastSoft || dial[i] <= 0) continue;
-    const float spacing = kSpacing * parts.radius_m[i], reach = kReach * spacing;
+    const float spacing = kSpacing * parts.radius_m[i], reach = kNodeReach * spacing;
     const auto node = static_cast<std::uint32_t>(nodes_.size());
     for (const auto& [way, k] : pointsWithin(mesh, i, reach)) {
       if (way < spacing) covered[k] = 1;
@@ -140,9 +140,9 @@ void Jiggle::add(const JiggleState& state, FrameArray& shown, std::span<Vector4f
     const float cut = length > 0 ? limit * std::tanh(length / limit) / length : 0;
     shown[k] = cut * state.offset[k];
   }
-  parallelFor((points_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(points_.size(), kChunk * (chunk + 1));
-    for (std::size_t p = kChunk * chunk; p < end; ++p) {
+  parallelFor((points_.size() + kJigglesPerTask - 1) / kJigglesPerTask, [&](std::size_t chunk) {
+    const std::size_t end = std::min(points_.size(), kJigglesPerTask * (chunk + 1));
+    for (std::size_t p = kJigglesPerTask * chunk; p < end; ++p) {
       Vector4f sum = Vector4f::Zero();
       for (std::uint32_t q = firstShare_[p]; q < firstShare_[p + 1]; ++q)
         sum += shares_[q].weight * shown[shares_[q].node];

@@ -23,8 +23,8 @@ constexpr float kHolds = 1, kLetsGo = 2.4f;
 constexpr float kFarthest = 0.8f;
 constexpr int kPushes = 2;
 // The last word.
-constexpr int kPasses = 4;
-constexpr std::uint8_t kRings = 5;  // 1: hit points
+constexpr int kContactPasses = 4;
+constexpr std::uint8_t kContactRings = 5;  // 1: hit points
 // Skin near a contact takes part in it: by this factor less from point to point.
 constexpr float kInfluence = 0.6f;
 
@@ -218,7 +218,7 @@ void LimbContact::spreadActive(Scratch& scratch) const {
       scratch.active.push_back(i);
     }
   std::size_t begin = 0;
-  for (std::uint8_t ring = 2; ring <= kRings; ++ring) {
+  for (std::uint8_t ring = 2; ring <= kContactRings; ++ring) {
     const std::size_t end = scratch.active.size();
     for (; begin < end; ++begin) {
       const std::uint32_t i = scratch.active[begin];
@@ -234,7 +234,7 @@ void LimbContact::spreadActive(Scratch& scratch) const {
   scratch.influenceNext.resize(rest_.size());
   for (const std::uint32_t i : scratch.active)
     scratch.influence[i] = scratch.ring[i] == 1 ? scratch.hit[i].gate : 0;
-  for (int pass = 0; pass < kRings - 1; ++pass) {
+  for (int pass = 0; pass < kContactRings - 1; ++pass) {
     for (const std::uint32_t i : scratch.active) {
       float most = 0;
       for (std::uint32_t q = firstEdge_[i]; q < firstEdge_[i + 1]; ++q)
@@ -281,7 +281,7 @@ void LimbContact::finish(std::span<const JointMotion> motion,
   };
   const auto project = [&](std::uint32_t i, const Vector4f& x) -> Vector4f {
     const std::int32_t cluster = clusterOf_[i];
-    if (scratch.ring[i] >= kRings || cluster < 0) return x;
+    if (scratch.ring[i] >= kContactRings || cluster < 0) return x;
     const std::vector<std::uint32_t>& near = scratch.near[static_cast<std::size_t>(cluster)];
     if (near.empty()) return x;
     const Hit hit = find(motion, near, i, x);
@@ -293,7 +293,7 @@ void LimbContact::finish(std::span<const JointMotion> motion,
   };
   constexpr std::size_t kChunk = 64;
   const std::size_t count = scratch.active.size();
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kContactPasses; ++pass) {
     parallelFor((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
       const std::size_t end = std::min(count, kChunk * (chunk + 1));
       for (std::size_t k = kChunk * chunk; k < end; ++k) {

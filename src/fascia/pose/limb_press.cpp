@@ -13,13 +13,13 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr std::size_t kClusterPoints = 32;
+constexpr std::size_t kPatchPoints = 32;
 // Softer than this on the mean a limb gives way at all; and a point of it.
-constexpr float kLeastSoft = 0.15f, kLeastSoftPoint = 0.02f;
+constexpr float kLeastSoftLimb = 0.15f, kLeastSoftSkin = 0.02f;
 // Kept between the two, and how near at rest is a touch already, in radii of the soft limb.
-constexpr float kMargin = 0.02f, kTouching = 0.6f;
+constexpr float kPressMargin = 0.02f, kTouching = 0.6f;
 // Depths in radii of the soft limb, between which a contact lets go, and how far flesh gives way.
-constexpr float kHolds = 0.2f, kLetsGo = 0.8f, kFarthest = 0.25f;
+constexpr float kPressHolds = 0.2f, kPressLetsGo = 0.8f, kPressFarthest = 0.25f;
 // How far from the bone, in radii, what presses is wholly on this side of it.
 constexpr float kThisSide = 0.15f;
 // Where a dent has faded out: so many edges and depths beyond its core.
@@ -27,7 +27,7 @@ constexpr float kFadeEdges = 3, kFadeDepths = 1.5f;
 // How far beyond its ends a limb takes its neighbours' skin along, in radii.
 constexpr float kBeyond = 1;
 // Points that press stand so far apart, in edges of what they press on.
-constexpr float kSpacing = 1.0f;
+constexpr float kPressSpacing = 1.0f;
 
 const LimbPress::FourTouches kNoTouches = [] {
   const Eigen::Array4f zero = Eigen::Array4f::Zero();
@@ -80,7 +80,7 @@ LimbPress::LimbPress(const PoseSource& source, const PoseMesh& mesh,
       limb.core_m += mesh.edge_m[i];
     }
     const auto count = static_cast<float>(parts_->skin[b].size());
-    if (soft < kLeastSoft * count) return;
+    if (soft < kLeastSoftLimb * count) return;
     limb.core_m /= count;
     for (std::uint32_t a = 0; a < joints; ++a)
       if (a != b && !hangTogether(above_, a, limb.joint)) addPressers(mesh, a, limb);
@@ -95,8 +95,8 @@ void LimbPress::addPatches(const PoseMesh& mesh, Limb& limb) const {
   const std::vector<float> way = wayAlongEdges(mesh, parts_->skin[limb.joint], beyond);
   std::vector<std::uint32_t> points;
   for (std::uint32_t i = 0; i < mesh.size(); ++i)
-    if (way[i] < beyond && softness_[i] >= kLeastSoftPoint) points.push_back(i);
-  forClusters(mesh, points, kClusterPoints, [&](std::span<const std::uint32_t> cluster) {
+    if (way[i] < beyond && softness_[i] >= kLeastSoftSkin) points.push_back(i);
+  forClusters(mesh, points, kPatchPoints, [&](std::span<const std::uint32_t> cluster) {
     Patch patch{{}, {cluster.begin(), cluster.end()}, {}};
     for (const std::uint32_t i : cluster) {
       const Vector3f room = Vector3f::Constant(parts_->radius_m[i]);
@@ -109,13 +109,14 @@ void LimbPress::addPatches(const PoseMesh& mesh, Limb& limb) const {
 
 void LimbPress::addPressers(const PoseMesh& mesh, std::uint32_t joint, Limb& limb) const {
   const LimbPart& body = parts_->part[limb.joint];
-  std::vector<std::uint32_t> points = thinned(mesh, parts_->skin[joint], kSpacing * limb.core_m);
+  std::vector<std::uint32_t> points =
+      thinned(mesh, parts_->skin[joint], kPressSpacing * limb.core_m);
   const auto clearOf = [&](std::uint32_t i) {
     return smoothStep((body.distance(mesh.rest[i]) - limb.highest_m) /
                       (kTouching * body.meanRadius_m()));
   };
   std::erase_if(points, [&](std::uint32_t i) { return clearOf(i) <= 0; });
-  forClusters(mesh, points, kClusterPoints, [&](std::span<const std::uint32_t> cluster) {
+  forClusters(mesh, points, kPatchPoints, [&](std::span<const std::uint32_t> cluster) {
     Presser presser{joint, Vector4f::Zero(), 0, {cluster.begin(), cluster.end()}, {}};
     for (const std::uint32_t i : cluster) {
       presser.middle += wide(mesh.rest[i]) / static_cast<float>(cluster.size());
@@ -133,7 +134,7 @@ void LimbPress::findTouches(const Limb& limb, std::span<const JointMotion> motio
   found.touches.clear();
   const LimbPart& body = parts_->part[limb.joint];
   const JointMotion& own = motion[limb.joint];
-  const float within = std::max(limb.highest_m, 0.f) + kMargin * body.meanRadius_m();
+  const float within = std::max(limb.highest_m, 0.f) + kPressMargin * body.meanRadius_m();
   for (const Presser& presser : limb.pressers) {
     const Vector3f middle = narrow(own.pointBack(motion[presser.joint].point(presser.middle)));
     if (body.distanceFromSegment(middle) > body.greatestRadius_m() + within + presser.radius_m)
@@ -165,7 +166,8 @@ void LimbPress::letGo(const Limb& limb, Scratch::OfLimb& found) const {
   }
   const float radius = parts_->part[limb.joint].meanRadius_m();
   for (Touch& t : found.touches)
-    t.gate *= 1 - smoothStep((found.around_m[t.joint] / radius - kHolds) / (kLetsGo - kHolds));
+    t.gate *= 1 - smoothStep((found.around_m[t.joint] / radius - kPressHolds) /
+                             (kPressLetsGo - kPressHolds));
   std::erase_if(found.touches, [](const Touch& t) { return t.gate <= 1e-3f; });
 }
 
@@ -173,7 +175,7 @@ float LimbPress::sinkOf(const Limb& limb, std::span<const FourTouches> touches, 
                         float fade_m, const Place& place) const {
   using Eigen::Array4f;
   const float soft = softness_[point], radius = parts_->part[limb.joint].meanRadius_m(),
-              gap = kMargin * radius;
+              gap = kPressMargin * radius;
   const auto smooth = [](const Array4f& t) -> Array4f {
     const Array4f cut = t.max(0.f).min(1.f);
     return cut * cut * (3 - 2 * cut);
@@ -192,7 +194,7 @@ float LimbPress::sinkOf(const Limb& limb, std::span<const FourTouches> touches, 
                     (1 - smooth((beside - limb.core_m) / fade_m)));
   }
   // As deep as it should, up to a limit.
-  const float limit = kFarthest * radius * std::sqrt(soft);
+  const float limit = kPressFarthest * radius * std::sqrt(soft);
   const float way = most.maxCoeff() / limit, squared = way * way;
   return limit * way / std::sqrt(std::sqrt(1 + squared * squared));
 }
@@ -211,7 +213,7 @@ void LimbPress::giveWay(const Limb& limb, const JointMotion& own, std::span<Vect
     if (std::none_of(found.touches.begin(), found.touches.end(),
                      [&](const Touch& t) { return patch.box.exteriorDistance(t.at) < reach; }))
       return;
-    std::array<Place, kClusterPoints> places;
+    std::array<Place, kPatchPoints> places;
     Eigen::AlignedBox3f box;
     float highest = -std::numeric_limits<float>::max();
     for (std::size_t k = 0; k < patch.points.size(); ++k) {

@@ -16,7 +16,7 @@ constexpr float kLeastWeight = 0.05f, kMostWeight = 3.f;
 // Pieces that lie so close to one another at rest (eyes in heads, clothes on bodies), as a share of
 // the figure's size, and whose weights differ by less than kAlike, move together by edges of this
 // weight. Farther: a sleeve would hang on the hip. More alike: belts come off.
-constexpr float kReach = 0.02f, kAlike = 0.5f, kVirtualWeight = 0.7f;
+constexpr float kVirtualReach = 0.02f, kAlike = 0.5f, kVirtualWeight = 0.7f;
 // A point without area of its own still needs a mass: this share of the mean.
 constexpr float kLeastArea = 1e-3f;
 
@@ -64,7 +64,7 @@ std::vector<std::uint32_t> piecesOf(const PoseMesh& mesh) {
 void addVirtualEdges(const PoseMesh& mesh, const std::vector<std::uint32_t>& piece,
                      std::span<const PointWeights> weights, std::vector<HalfEdge>& edges) {
   if (std::adjacent_find(piece.begin(), piece.end(), std::not_equal_to<>()) == piece.end()) return;
-  const float reach = kReach * mesh.size_m;
+  const float reach = kVirtualReach * mesh.size_m;
   const PointGrid grid(mesh.rest, reach);
   for (std::uint32_t i = 0; i < mesh.size(); ++i) {
     float nearest = reach * reach;

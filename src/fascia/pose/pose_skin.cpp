@@ -9,7 +9,7 @@
 namespace fascia {
 namespace {
 
-constexpr std::size_t kChunk = 512;
+constexpr std::size_t kPointsPerTask = 512;
 constexpr float kMostAlong = 0.2f;  // displacement of flesh along the normal, in local radii
 
 // A dial's values; 0 where the skin is rigid.
@@ -23,8 +23,8 @@ std::vector<float> valuesOf(const std::vector<float>& dial, std::span<const char
 
 template <class Task>
 void forChunks(std::size_t count, const Task& task) {
-  parallelFor((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    task(kChunk * chunk, std::min(count, kChunk * (chunk + 1)));
+  parallelFor((count + kPointsPerTask - 1) / kPointsPerTask, [&](std::size_t chunk) {
+    task(kPointsPerTask * chunk, std::min(count, kPointsPerTask * (chunk + 1)));
   });
 }
 

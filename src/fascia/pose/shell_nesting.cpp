@@ -21,8 +21,8 @@ constexpr float kSlit = 1e-4f;
 // The share of what a point sees that other pieces must have until it goes with all of them.
 constexpr float kAmong = 0.15f;
 constexpr int kFadePasses = 6;
-constexpr float kLeastShare = 0.01f;
-constexpr std::size_t kChunk = 256;
+constexpr float kLeastNested = 0.01f;
+constexpr std::size_t kShellChunk = 256;
 
 Vector4f linearBlend(std::span<const JointMotion> motion, const Vector4f& rest,
                      const PointWeights& weights) {
@@ -108,7 +108,7 @@ ShellNesting::ShellNesting(const PoseSource& source, const PoseMesh& mesh,
   const std::vector<float> share = shareOf(mesh, grid, reach, rigid);
   std::vector<std::pair<std::uint32_t, float>> around;
   for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-    if (share[i] < kLeastShare) continue;
+    if (share[i] < kLeastNested) continue;
     around.clear();
     float total = 0;
     visitAround(mesh, grid, reach, i, [&](std::uint32_t j, float weight) {
@@ -125,16 +125,16 @@ void ShellNesting::nest(std::span<const JointMotion> motion, std::span<Vector4f>
                         Scratch& scratch) const {
   if (points_.empty()) return;
   scratch.added.resize(seen_.size());
-  parallelFor((seen_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(seen_.size(), kChunk * (chunk + 1));
-    for (std::size_t s = kChunk * chunk; s < end; ++s) {
+  parallelFor((seen_.size() + kShellChunk - 1) / kShellChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(seen_.size(), kShellChunk * (chunk + 1));
+    for (std::size_t s = kShellChunk * chunk; s < end; ++s) {
       const Seen& seen = seen_[s];
       scratch.added[s] = position[seen.point] - linearBlend(motion, seen.rest, seen.weights);
     }
   });
-  parallelFor((points_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(points_.size(), kChunk * (chunk + 1));
-    for (std::size_t k = kChunk * chunk; k < end; ++k) {
+  parallelFor((points_.size() + kShellChunk - 1) / kShellChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(points_.size(), kShellChunk * (chunk + 1));
+    for (std::size_t k = kShellChunk * chunk; k < end; ++k) {
       const Point& p = points_[k];
       Vector4f mean = Vector4f::Zero();
       for (std::uint32_t n = p.firstNeighbour; n < p.firstNeighbour + p.neighbours; ++n)

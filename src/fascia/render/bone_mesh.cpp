@@ -13,11 +13,11 @@ namespace {
 
 using Vec3f = Eigen::Vector3f;
 
-constexpr std::uint32_t kSegments = 20;  // around
-constexpr std::uint32_t kRings = 10;     // of a ball, pole to pole
-constexpr double kBallToBone = 0.11;     // a joint ball's radius over its bone's length
-constexpr float kLargestBall = 0.015f;   // … and at most, over the size of an imported figure
-constexpr double kShortestBone = 2e-3;   // of that size; shorter ones are joints on top of others
+constexpr std::uint32_t kAround = 20;   // segments
+constexpr std::uint32_t kRings = 10;    // of a ball, pole to pole
+constexpr double kBallToBone = 0.11;    // a joint ball's radius over its bone's length
+constexpr float kLargestBall = 0.015f;  // … and at most, over the size of an imported figure
+constexpr double kShortestBone = 2e-3;  // of that size; shorter ones are joints on top of others
 
 // A long bone's outline: place along it and radius, both as a share; knob, shaft, knob.
 struct Outline {
@@ -44,16 +44,16 @@ void addRevolution(TriangleMesh& mesh, const Vec3f& axis, std::uint32_t rings, R
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   for (std::uint32_t r = 0; r < rings; ++r) {
     const auto [center, radius_m] = ringAt(r);
-    for (std::uint32_t s = 0; s < kSegments; ++s) {
-      const float a = static_cast<float>(2 * kPi) * static_cast<float>(s) / kSegments;
+    for (std::uint32_t s = 0; s < kAround; ++s) {
+      const float a = static_cast<float>(2 * kPi) * static_cast<float>(s) / kAround;
       mesh.positions.push_back(center + radius_m * (std::cos(a) * side + std::sin(a) * other));
     }
   }
   for (std::uint32_t r = 0; r + 1 < rings; ++r)
-    for (std::uint32_t s = 0; s < kSegments; ++s) {
-      const std::uint32_t next = (s + 1) % kSegments;
-      const std::uint32_t a = base + r * kSegments + s, b = base + r * kSegments + next;
-      const std::uint32_t c = a + kSegments, d = b + kSegments;
+    for (std::uint32_t s = 0; s < kAround; ++s) {
+      const std::uint32_t next = (s + 1) % kAround;
+      const std::uint32_t a = base + r * kAround + s, b = base + r * kAround + next;
+      const std::uint32_t c = a + kAround, d = b + kAround;
       mesh.triangles.push_back({a, b, d});
       mesh.triangles.push_back({a, d, c});
     }

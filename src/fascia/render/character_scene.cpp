@@ -11,7 +11,7 @@
 namespace fascia {
 namespace {
 
-constexpr float kScatterOfHeight = 0.045f;      // light inside skin; larger: wax
+constexpr float kSkinScatter = 0.045f;          // of the height: light inside skin; larger: wax
 constexpr float kVeilOpacity = 0.24f;           // of skin that shows the layers below
 constexpr std::size_t kSkinTriangles = 10'000;  // fewer: corners show in the outline
 constexpr float kTendonAspect = 1.25f;          // rounder solids are drawn without tendons
@@ -35,7 +35,7 @@ Material skinMaterial(const Character& character, const SceneOptions& options, d
     material.color = Rgb::Ones();
   }
   material.roughness = 0.5f;
-  material.scatter_m = kScatterOfHeight * static_cast<float>(height_m);
+  material.scatter_m = kSkinScatter * static_cast<float>(height_m);
   if (isVeil(options.layers)) {
     material.opacity = kVeilOpacity;
     material.texture = nullptr;  // a pattern would compete with what it is to show
@@ -63,7 +63,7 @@ void addRigSkin(const Character& character, const TriangleMesh& skin, const Scen
                 double height_m, Scene& scene) {
   RigSurface::Look look;
   if (const auto& def = character.def().skin) look.color = Rgb(def->color.data());
-  look.scatter_m = kScatterOfHeight * static_cast<float>(height_m);
+  look.scatter_m = kSkinScatter * static_cast<float>(height_m);
   if (isVeil(options.layers)) look.veil = kVeilOpacity;
   if (options.rig_surface)
     options.rig_surface->addTo(scene, skin, look);
@@ -95,10 +95,6 @@ std::vector<Eigen::Vector3f> fibreCoordinates(const TriangleMesh& mesh) {
   return result;
 }
 
-Rgb rgb(const Color& color) {
-  return {color.r, color.g, color.b};
-}
-
 void addMuscles(const Character& character, const CharacterState& state,
                 const SceneOptions& options, double height_m, Scene& scene) {
   for (std::size_t i = 0; i < state.flesh.solidCount(); ++i) {
@@ -115,7 +111,7 @@ void addMuscles(const Character& character, const CharacterState& state,
     muscle.material.kind = Material::Kind::muscle;
     muscle.material.color = rgb(character.flesh().def(id).color);
     muscle.material.roughness = 0.36f;
-    muscle.material.scatter_m = kScatterOfHeight * static_cast<float>(height_m);
+    muscle.material.scatter_m = kSkinScatter * static_cast<float>(height_m);
     scene.drawables.push_back(std::move(muscle));
   }
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include <fascia/flesh/flesh.h>
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/math/types.h>
 #include <fascia/render/camera.h>
@@ -12,6 +13,9 @@ namespace fascia {
 
 // Colours a person gives are sRGB in [0, 1]; light intensities are linear factors.
 using Rgb = Eigen::Vector3f;
+inline Rgb rgb(const Color& color) {
+  return {color.r, color.g, color.b};
+}
 
 struct Material {
   enum class Kind {

@@ -5,12 +5,8 @@
 namespace fascia {
 namespace {
 
-constexpr float kScatterOfHeight = 0.03f;  // light inside jelly
+constexpr float kJellyScatter = 0.03f;  // of the height: light inside jelly
 constexpr int kPropDetail = 48;
-
-Rgb rgb(const Color& color) {
-  return {color.r, color.g, color.b};
-}
 
 // Bodies look like jelly, plates like painted card.
 Material bodyMaterial(const SceneBodyDef& body, double height_m) {
@@ -20,7 +16,7 @@ Material bodyMaterial(const SceneBodyDef& body, double height_m) {
   material.color = rgb(body.color);
   material.roughness = plate ? 0.55f : 0.3f;
   material.wrap = plate ? 0.15f : 0;
-  material.scatter_m = kScatterOfHeight * static_cast<float>(height_m);
+  material.scatter_m = kJellyScatter * static_cast<float>(height_m);
   return material;
 }
 

@@ -2,26 +2,9 @@
 
 #include <algorithm>
 
+#include <fascia/geometry/triangle_mesh.h>
+
 namespace fascia {
-namespace {
-
-using Edge = std::array<std::uint32_t, 2>;
-
-// Every edge both ways, as often as triangles run along it; increasing.
-std::vector<Edge> edgesBothWays(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  std::vector<Edge> edges;
-  edges.reserve(6 * triangles.size());
-  for (const auto& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      edges.push_back({t[k], t[(k + 1) % 3]});
-      edges.push_back({t[(k + 1) % 3], t[k]});
-    }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
-}  // namespace
-
 DeltaMush::DeltaMush(const RiggedModel& model, const DeltaMushOptions& options)
     : options_(options),
       blend_(model),
@@ -38,7 +21,7 @@ DeltaMush::DeltaMush(const RiggedModel& model, const DeltaMushOptions& options)
 }
 
 void DeltaMush::findNeighbours(const RiggedModel& model) {
-  const std::vector<Edge> edges = edgesBothWays(model.triangles);
+  const std::vector<std::array<std::uint32_t, 2>> edges = edgesBothWays(model.triangles);
   const std::size_t count = model.points_m.size();
   std::vector<bool> open(count, false);
   for (auto it = edges.begin(); it != edges.end();) {

@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include <fascia/base/error.h>
+#include <fascia/base/index.h>
 #include <fascia/base/suggest.h>
 #include <fascia/rig/joint_meaning.h>
 
@@ -13,10 +14,6 @@ namespace fascia {
 namespace {
 
 using Ids = std::vector<int>;
-
-std::size_t at(int id) {
-  return static_cast<std::size_t>(id);
-}
 
 // The name as two files of the same rig share it: without namespace, small letters.
 std::string bareName(std::string_view name) {
@@ -80,8 +77,8 @@ int findJoint(std::span<const RigJoint> joints, const std::string& name, const c
     nearest.offer(joints[j].name);
   }
   Issue issue;
-  issue.message =
-      std::string("the joint map names ") + quoted(name) + ", which " + where + " does not have";
+  issue.message = std::string("the joint map names ") + quotedName(name) + ", which " + where +
+                  " does not have";
   issue.hint = nearest.hint();
   throw Error(std::move(issue));
 }
@@ -219,10 +216,10 @@ void Guesser::dropContradictions(std::vector<std::string>* notes) {
     while (above >= 0 && found_[at(above)].source < 0) above = target_[at(above)].parent;
     if (above < 0 || isAbove(found_[at(above)].source, found_[t].source)) continue;
     if (notes) {
-      notes->push_back(quoted(target_[t].name) +
-                       " is not driven: " + quoted(source_[at(found_[t].source)].name) + " (" +
+      notes->push_back(quotedName(target_[t].name) +
+                       " is not driven: " + quotedName(source_[at(found_[t].source)].name) + " (" +
                        found_[t].why + ") does not lie below " +
-                       quoted(source_[at(found_[at(above)].source)].name));
+                       quotedName(source_[at(found_[at(above)].source)].name));
     }
     found_[t] = {};
   }
@@ -269,7 +266,7 @@ JointMap parseJointMap(std::string_view text, const std::string& file) {
     if (sign == std::string::npos || source.empty()) {
       Issue issue;
       issue.where = {file, line, {}};
-      issue.message = std::string("found ") + quoted(content) + ", expected 'source = target'";
+      issue.message = std::string("found ") + quotedName(content) + ", expected 'source = target'";
       throw Error(std::move(issue));
     }
     map.push_back({source, trim(std::string_view(content).substr(sign + 1)), "given"});

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include <fascia/base/error.h>
+#include <fascia/base/index.h>
 #include <fascia/base/suggest.h>
 #include <fascia/rig/retarget_legs.h>
 #include <fascia/rig/retarget_rest.h>
@@ -16,10 +17,6 @@ namespace {
 constexpr double kNoStance_rad = radians(12);
 // A foot that moves slower stands. Larger: swinging feet count; smaller: noise hides standing ones.
 constexpr double kStanding_legs_per_s = 0.15;
-
-std::size_t at(int id) {
-  return static_cast<std::size_t>(id);
-}
 
 std::vector<DrivenJoint> drivenJoints(const MotionFigure& source, const RiggedModel& target,
                                       const JointMap& map, std::span<const JointMeaning> meanings) {

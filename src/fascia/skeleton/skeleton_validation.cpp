@@ -69,7 +69,7 @@ JointIndices indexNames(const SkeletonDef& def, const std::string& pointer,
     }
     const auto [first, fresh] = indices.try_emplace(name, i);
     if (!fresh) {
-      diagnostics.error(namePointer, "a second joint named " + quoted(name),
+      diagnostics.error(namePointer, "a second joint named " + quotedName(name),
                         "the first is joint " + std::to_string(first->second));
     }
   }
@@ -78,13 +78,13 @@ JointIndices indexNames(const SkeletonDef& def, const std::string& pointer,
 
 // "a → b → a", or empty if the chain of parents above `start` ends. At most kMostJoints steps.
 std::string cycleThrough(const SkeletonDef& def, const JointIndices& indices, std::size_t start) {
-  std::string path = quoted(def.joints[start].name);
+  std::string path = quotedName(def.joints[start].name);
   std::size_t at = start;
   for (std::size_t steps = 0; steps < def.joints.size(); ++steps) {
     const auto parent = indices.find(def.joints[at].parent);
     if (parent == indices.end()) return {};
     at = parent->second;
-    if (steps < 8) path += " → " + quoted(def.joints[at].name);
+    if (steps < 8) path += " → " + quotedName(def.joints[at].name);
     if (at == start) return steps < 8 ? path : path + " → …";
   }
   return {};  // runs into a cycle that `start` is not part of: reported there
@@ -97,13 +97,13 @@ void validateParent(const SkeletonDef& def, const JointIndices& indices, std::si
   if (parent == indices.end()) {
     NearestName nearest(joint.parent);
     for (const auto& [known, index] : indices) nearest.offer(known);
-    diagnostics.error(pointer, "unknown joint " + quoted(joint.parent), nearest.hint());
+    diagnostics.error(pointer, "unknown joint " + quotedName(joint.parent), nearest.hint());
   } else if (parent->second >= i) {
     const std::string cycle = cycleThrough(def, indices, i);
     if (!cycle.empty()) {
       diagnostics.error(pointer, "the parents run in a circle: " + cycle);
     } else {
-      diagnostics.error(pointer, "the parent " + quoted(joint.parent) + " comes later",
+      diagnostics.error(pointer, "the parent " + quotedName(joint.parent) + " comes later",
                         "list parents before their children");
     }
   }
@@ -120,8 +120,8 @@ void validateTree(const SkeletonDef& def, const JointIndices& indices, const std
     } else if (rooted) {
       // A forgotten parent must not quietly tear the figure in two.
       diagnostics.error(parentPointer,
-                        "a second root: " + quoted(def.joints[i].name) + " has no parent",
-                        "a skeleton has one root; should the parent be " + quoted(root) + "?");
+                        "a second root: " + quotedName(def.joints[i].name) + " has no parent",
+                        "a skeleton has one root; should the parent be " + quotedName(root) + "?");
     } else {
       rooted = true;
       root = def.joints[i].name;

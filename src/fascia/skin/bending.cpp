@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/math/points.h>
 #include <fascia/math/types.h>
 #include <fascia/skin/elastic_grid.h>
 
 namespace fascia {
 namespace {
-
-Vec3 pointAt(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
 
 // Second differences over the 3x3 stencil, rows from below, columns from the left.
 constexpr double kSecond[3][9] = {

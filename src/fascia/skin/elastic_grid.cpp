@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/math/points.h>
+#include <fascia/skin/plateau.h>
+
 namespace fascia {
 namespace {
-
-Vec3 pointAt(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
 
 double cellArea(const VectorArray& r, const GridLayout& g, int i, int j) {
   const Vec3 a = pointAt(r, g.at(i, j)), b = pointAt(r, g.at(i + 1, j));
@@ -29,15 +28,6 @@ double areaOrZero(const VectorArray& r, const GridLayout& g, int i, int j) {
     i += g.columns;
   }
   return spansColumn(g, i) ? cellArea(r, g, i, j) : 0;
-}
-
-// φ and its integral: the linear stress that stops growing at the plateau.
-double plateauStress(double t, double limit) {
-  return std::clamp(t, -limit, limit);
-}
-double plateauEnergy(double t, double limit) {
-  const double s = std::abs(t);
-  return s <= limit ? 0.5 * s * s : limit * s - 0.5 * limit * limit;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/math/points.h>
 #include <fascia/skin/grid_kernels.h>
 #include <fascia/skin/resample.h>
 

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/math/points.h>
 #include <fascia/math/types.h>
 
 namespace fascia {
 namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
-
-Vec3 pointAt(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
 
 struct Fold {
   Vec3 edge, toFirst, toSecond;  // p1 − p0, p2 − p0, p3 − p0

@@ -9,11 +9,12 @@ namespace {
 
 // Joints that move farther than this share of the figure's size within one frame have been put
 // somewhere else: the flesh goes along at rest.
-constexpr double kJump = 0.2;
+constexpr double kJointJump = 0.2;
 
 bool hasJumped(std::span<const Transform> before, std::span<const Transform> now, double size_m) {
   for (std::size_t j = 0; j < before.size() && j < now.size(); ++j)
-    if (!((now[j].translation_m - before[j].translation_m).norm() < kJump * size_m)) return true;
+    if (!((now[j].translation_m - before[j].translation_m).norm() < kJointJump * size_m))
+      return true;
   return false;
 }
 

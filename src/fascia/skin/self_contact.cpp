@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include <fascia/base/parallel.h>
+#include <fascia/math/points.h>
 
 namespace fascia {
 namespace {
 
 // Patches handed to a thread at once.
 constexpr std::size_t kPatchesPerTask = 8;
-constexpr std::size_t kPatch = SelfContactModel::Patch::kCapacity;
 // Each halves, at least, what is left where only one of two sides has a contact of its own.
 constexpr int kPasses = 4;
 constexpr int kVelocityPasses = 2;
@@ -31,17 +31,14 @@ constexpr float kTouching = 0.05f;
 // than a resting point trembles, and it would go to and fro between the two.
 constexpr float kMoreUrgent = 0.05f;
 
-Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
 void put(VectorArray& a, std::size_t k, const Eigen::Vector3f& v) {
   a.x[k] = v.x(), a.y[k] = v.y(), a.z[k] = v.z();
 }
 
 Eigen::Vector3f blend(const VectorArray& a, const std::array<std::uint32_t, 3>& corners,
                       const Eigen::Vector3f& weights) {
-  return weights[0] * get(a, corners[0]) + weights[1] * get(a, corners[1]) +
-         weights[2] * get(a, corners[2]);
+  return weights[0] * floatPointAt(a, corners[0]) + weights[1] * floatPointAt(a, corners[1]) +
+         weights[2] * floatPointAt(a, corners[2]);
 }
 
 // Square metres per kilogram: how readily a piece of skin gives way. 0 for what cannot.
@@ -59,7 +56,7 @@ float keptDistance(const SelfContactModel& model, std::uint32_t point, std::uint
 }  // namespace
 
 float SelfContact::Contact::distance(const VectorArray& position) const {
-  return normal.dot(get(position, point) - blend(position, corners, weights));
+  return normal.dot(floatPointAt(position, point) - blend(position, corners, weights));
 }
 
 float SelfContact::Contact::approach(const VectorArray& velocity) const {
@@ -69,7 +66,7 @@ float SelfContact::Contact::approach(const VectorArray& velocity) const {
 SelfContact::SelfContact(const SelfContactModel& model)
     : model_(&model),
       search_(model),
-      found_(model.patches.size() * kPatch),
+      found_(model.patches.size() * SelfContactModel::Patch::kCapacity),
       foundCounts_(model.patches.size()),
       hasContact_(model.points),
       pushingMass_(model.points),
@@ -107,7 +104,8 @@ void SelfContact::find(const PointModel& points, float reach_m, const VectorArra
   });
   contacts_.clear();
   for (std::size_t p = 0; p < patches; ++p) {
-    const auto first = found_.begin() + static_cast<std::ptrdiff_t>(p * kPatch);
+    const auto first =
+        found_.begin() + static_cast<std::ptrdiff_t>(p * SelfContactModel::Patch::kCapacity);
     contacts_.insert(contacts_.end(), first, first + foundCounts_[p]);
   }
 }
@@ -120,7 +118,7 @@ void SelfContact::findOfPatch(std::size_t patch, const PointModel& points, float
     std::uint32_t group;
     Touch touch;
   };
-  std::array<Best, kPatch> best;
+  std::array<Best, SelfContactModel::Patch::kCapacity> best;
   std::uint32_t any = 0;  // bit by bit: lanes with a touch
   PointLanes lanes;
   const auto consider = [&](std::uint32_t group, const Touch& touch) {
@@ -151,7 +149,7 @@ void SelfContact::findOfPatch(std::size_t patch, const PointModel& points, float
                           Eigen::Vector3f::Zero()};
     const float approach_m = -interval_s * contact.approach(velocity);
     if (touch.distance_m - contact.keep_m > reach_m + std::max(0.f, approach_m)) continue;
-    found_[patch * kPatch + count++] = contact;
+    found_[patch * SelfContactModel::Patch::kCapacity + count++] = contact;
   }
 }
 
@@ -198,7 +196,7 @@ SelfContact::Result SelfContact::limitWays(const VectorArray& position) {
 template <class Wanted>
 void SelfContact::balance(const PointModel& points, const Wanted& wanted, VectorArray& values) {
   const auto add = [](VectorArray& a, std::size_t k, const Eigen::Vector3f& v) {
-    put(a, k, get(a, k) + v);
+    put(a, k, floatPointAt(a, k) + v);
   };
   for (const Contact& c : contacts_) {
     const float amount = c.strength * c.share * wanted(c);
@@ -212,7 +210,7 @@ void SelfContact::balance(const PointModel& points, const Wanted& wanted, Vector
     }
   }
   const auto apply = [&](std::size_t k) {
-    const Eigen::Vector3f change = get(change_, k);
+    const Eigen::Vector3f change = floatPointAt(change_, k);
     if (change.squaredNorm() > 0) add(values, k, change);
     put(change_, k, Eigen::Vector3f::Zero());
   };
@@ -236,8 +234,8 @@ void SelfContact::forEachMoved(const Visit& visit) const {
 Eigen::Vector3f SelfContact::standingOut(const VectorArray& position, std::size_t k) const {
   const std::span<const std::uint32_t> neighbors = model_->neighbors[k];
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (const std::uint32_t n : neighbors) sum += get(position, n);
-  return get(position, k) - sum / static_cast<float>(neighbors.size());
+  for (const std::uint32_t n : neighbors) sum += floatPointAt(position, n);
+  return floatPointAt(position, k) - sum / static_cast<float>(neighbors.size());
 }
 
 // Takes back what would make the surface rougher than kMostRough allows, whatever the contacts
@@ -251,9 +249,9 @@ void SelfContact::keepSmooth(VectorArray& position) {
     if (length > most) put(change_, k, (most / length - 1) * now);
   });
   forEachMoved([&](std::size_t k) {
-    const Eigen::Vector3f change = get(change_, k), before = get(start_, k);
+    const Eigen::Vector3f change = floatPointAt(change_, k), before = floatPointAt(start_, k);
     put(change_, k, Eigen::Vector3f::Zero());
-    Eigen::Vector3f way = get(position, k) + change - before;
+    Eigen::Vector3f way = floatPointAt(position, k) + change - before;
     const float most = kMostWay * model_->edge_m[k], length = way.norm();
     if (!(length > 0)) return;
     if (length > most) way *= most / length;
@@ -278,23 +276,23 @@ void SelfContact::removeApproach(const PointModel& points, const VectorArray& po
 // velocity that they have in common then, and starts from where their shares of the way meet.
 void SelfContact::placePlane(Contact& c, const VectorArray& position,
                              const VectorArray& velocity) const {
-  const Eigen::Vector3f own = get(velocity, c.point);
+  const Eigen::Vector3f own = floatPointAt(velocity, c.point);
   c.planeVelocity = own + c.share * (blend(velocity, c.corners, c.weights) - own);
-  c.offset_m = c.normal.dot(get(position, c.point)) - c.share * (c.distance(position) - c.keep_m) -
-               (1 - c.strength) * model_->gap_m;
+  c.offset_m = c.normal.dot(floatPointAt(position, c.point)) -
+               c.share * (c.distance(position) - c.keep_m) - (1 - c.strength) * model_->gap_m;
 }
 
 void SelfContact::writeHalfSpaces(const VectorArray& position, const VectorArray& velocity,
                                   float interval_s, PointSurroundings& around) const {
   for (const Contact& c : contacts_) {
     const std::size_t k = c.point;
-    const Eigen::Vector3f place = get(position, k), own = get(velocity, k);
+    const Eigen::Vector3f place = floatPointAt(position, k), own = floatPointAt(velocity, k);
     const float way_m = std::max(0.f, c.normal.dot(place) - c.offset_m);
-    const Eigen::Vector3f flesh = get(around.normal, k);
+    const Eigen::Vector3f flesh = floatPointAt(around.normal, k);
     if (flesh.squaredNorm() > 0) {
       const float then = way_m + interval_s * c.normal.dot(own - c.planeVelocity);
       const float fleshThen = flesh.dot(place) - around.offset[k] +
-                              interval_s * flesh.dot(own - get(around.fleshVelocity, k));
+                              interval_s * flesh.dot(own - floatPointAt(around.fleshVelocity, k));
       if (fleshThen < 0 || then > fleshThen - kMoreUrgent * model_->gap_m) continue;
     }
     put(around.normal, k, c.normal);

@@ -8,6 +8,7 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/geometry/triangle_hierarchy.h>
+#include <fascia/math/points.h>
 #include <fascia/skin/self_contact_search.h>
 
 namespace fascia {
@@ -42,10 +43,6 @@ constexpr float kRestSlack = 0.02f;
 constexpr int kSpread = 2;
 // Distance to keep between what crosses.
 constexpr float kLeaveAlone = -1e30f;
-
-Eigen::Vector3f get(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
 
 constexpr std::size_t wholeVectors(std::size_t count) {
   return (count + SelfContactModel::kLanes - 1) / SelfContactModel::kLanes *
@@ -95,7 +92,7 @@ class NearSearch {
   using Entry = std::pair<float, std::uint32_t>;
 
   float length(std::uint32_t a, std::uint32_t b) const {
-    return (get(rest_, a) - get(rest_, b)).norm();
+    return (floatPointAt(rest_, a) - floatPointAt(rest_, b)).norm();
   }
   void reach(std::uint32_t point, float distance) {
     if (!(distance < distance_[point])) return;
@@ -139,7 +136,8 @@ class Preparation {
   // Halves the points along the widest of their six dimensions, place and normal, in whole patches.
   void makePatches() {
     TriangleMesh& mesh = mesh_;
-    for (std::size_t k = 0; k < model_.points; ++k) mesh.positions.push_back(get(rest_, k));
+    for (std::size_t k = 0; k < model_.points; ++k)
+      mesh.positions.push_back(floatPointAt(rest_, k));
     mesh.triangles.assign(triangles_.begin(), triangles_.end());
     computeNormals(mesh.positions, mesh.triangles, mesh.normals);
     meanEdge_m_ = meanEdgeLength();
@@ -158,22 +156,21 @@ class Preparation {
       const auto count = static_cast<float>(neighbors.size());
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (const std::uint32_t n : neighbors) {
-        sum += get(rest_, n);
-        m.edge_m[k] += (get(rest_, n) - get(rest_, k)).norm() / count;
+        sum += floatPointAt(rest_, n);
+        m.edge_m[k] += (floatPointAt(rest_, n) - floatPointAt(rest_, k)).norm() / count;
       }
-      m.roughAtRest_m[k] = (get(rest_, k) - sum / count).norm();
+      m.roughAtRest_m[k] = (floatPointAt(rest_, k) - sum / count).norm();
       m.pointGap_m[k] = std::min(m.gap_m, kGapOfEdges * m.edge_m[k]);
     }
   }
 
   void split(std::span<std::uint32_t> points) {
-    constexpr std::size_t kPatch = SelfContactModel::Patch::kCapacity;
     if (points.empty()) return;
-    if (points.size() <= kPatch) {
+    if (points.size() <= SelfContactModel::Patch::kCapacity) {
       std::sort(points.begin(), points.end());
       SelfContactModel::Patch& patch = model_.patches.emplace_back();
       patch.count = static_cast<std::uint32_t>(points.size());
-      for (std::size_t l = 0; l < kPatch; ++l)
+      for (std::size_t l = 0; l < SelfContactModel::Patch::kCapacity; ++l)
         patch.points[l] = static_cast<std::int32_t>(points[std::min(l, points.size() - 1)]);
       return;
     }
@@ -187,7 +184,9 @@ class Preparation {
     for (const std::uint32_t k : points) low = low.cwiseMin(at(k)), high = high.cwiseMax(at(k));
     Eigen::Index axis;
     (high - low).maxCoeff(&axis);
-    const std::size_t patches = (points.size() + kPatch - 1) / kPatch, half = patches / 2 * kPatch;
+    const std::size_t patches = (points.size() + SelfContactModel::Patch::kCapacity - 1) /
+                                SelfContactModel::Patch::kCapacity,
+                      half = patches / 2 * SelfContactModel::Patch::kCapacity;
     std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half),
                      points.end(), [&](std::uint32_t a, std::uint32_t b) {
                        const float x = at(a)[axis], y = at(b)[axis];
@@ -242,7 +241,7 @@ class Preparation {
       for (std::size_t c = 0; c < 3; ++c) {
         m.corners[c].push_back(static_cast<std::int32_t>(t[c]));
         points.push_back(t[c]);
-        box.add(get(rest_, t[c]).cast<double>());
+        box.add(floatPointAt(rest_, t[c]).cast<double>());
       }
       isRepeated_.push_back(i >= members.size());
     }
@@ -264,8 +263,9 @@ class Preparation {
     for (std::size_t t = 0; t < m.triangleCount(); ++t) {
       if (isRepeated_[t]) continue;
       const auto [a, b, c] = m.triangle(t);
-      const Eigen::Vector3f r = get(rest_, a);
-      const float area = 0.5f * (get(rest_, b) - r).cross(get(rest_, c) - r).norm();
+      const Eigen::Vector3f r = floatPointAt(rest_, a);
+      const float area =
+          0.5f * (floatPointAt(rest_, b) - r).cross(floatPointAt(rest_, c) - r).norm();
       for (const std::uint32_t corner : {a, b, c}) {
         around[corner].push_back(static_cast<std::int32_t>(t));
         m.area_m2[corner] += area / 3;
@@ -307,14 +307,16 @@ class Preparation {
         Vec3 center = Vec3::Zero(), normal = Vec3::Zero();
         float edge = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-          center += get(rest_, corners[c]).cast<double>() / 3;
+          center += floatPointAt(rest_, corners[c]).cast<double>() / 3;
           normal += mesh_.normals[corners[c]].cast<double>();
-          edge = std::max(edge, (get(rest_, corners[c]) - get(rest_, corners[(c + 1) % 3])).norm());
+          edge = std::max(
+              edge,
+              (floatPointAt(rest_, corners[c]) - floatPointAt(rest_, corners[(c + 1) % 3])).norm());
         }
         const float most_m = (m.gap_m + std::min(edge, meanEdge_m_)) / kDepthShare;
         float least_m = thickness(center, normal.normalized(), most_m);
         for (const std::uint32_t c : corners)
-          least_m = std::min(least_m, thickness(get(rest_, c).cast<double>(),
+          least_m = std::min(least_m, thickness(floatPointAt(rest_, c).cast<double>(),
                                                 mesh_.normals[c].cast<double>(), most_m));
         m.depth_m[t] = kDepthShare * least_m;
         m.groups[g].deepest_m = std::max(m.groups[g].deepest_m, m.depth_m[t]);
@@ -328,7 +330,7 @@ class Preparation {
     double sum = 0;
     for (const auto& t : triangles_)
       for (std::size_t c = 0; c < 3; ++c)
-        sum += (get(rest_, t[c]) - get(rest_, t[(c + 1) % 3])).norm();
+        sum += (floatPointAt(rest_, t[c]) - floatPointAt(rest_, t[(c + 1) % 3])).norm();
     return static_cast<float>(sum /
                               static_cast<double>(std::max<std::size_t>(1, 3 * triangles_.size())));
   }

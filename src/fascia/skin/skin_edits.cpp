@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/math/points.h>
 #include <fascia/skin/skin_parts.h>
 
 namespace fascia {

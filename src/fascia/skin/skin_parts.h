@@ -9,10 +9,6 @@ namespace fascia {
 
 // What the builders of grid and mesh skins share.
 
-inline Vec3 pointAt(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
-
 // Reports faults of a skin's definition, and looks up what it names.
 class SkinReport {
  public:

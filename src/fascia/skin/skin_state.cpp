@@ -18,8 +18,6 @@ void SkinState::addTo(StateHash& hash, const SkinTopology& topology) const {
 
 namespace {
 
-constexpr FloatArray VectorArray::*kAxes[3] = {&VectorArray::x, &VectorArray::y, &VectorArray::z};
-
 // A pose's joints as the rig's: rest -> now.
 void rigMotion(const RiggedSkin& rigged, const SkinPose& pose, std::vector<Transform>& motion) {
   motion.clear();
@@ -55,7 +53,7 @@ void Skin::placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray
 void Skin::placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
   if (!isGrid())
     for (const std::size_t k : fixedPoints_)
-      for (const auto axis : kAxes) (out.*axis)[k] = (scratch.points.*axis)[k];
+      for (const auto axis : VectorArray::kAxes) (out.*axis)[k] = (scratch.points.*axis)[k];
   for (const Fixed& f : fixed_) {
     const Vec3 p = pose.joints[f.joint.index()].point(f.position_joint);
     out.x[f.point] = static_cast<float>(p.x());
@@ -69,7 +67,7 @@ void Skin::placeAll(const SkinPose& pose, CarryScratch& scratch, VectorArray& ou
     carriers_.place(*pose.field, scratch.points, out);
   } else {
     placeRigged(pose, scratch);
-    for (const auto axis : kAxes)
+    for (const auto axis : VectorArray::kAxes)
       std::copy_n((scratch.points.*axis).begin(), pointCount(), (out.*axis).begin());
   }
   placeFixed(pose, scratch, out);

@@ -19,7 +19,7 @@ constexpr int kMostIntervals = 8;
 constexpr double kRidingStep_s = 1.0 / 960;
 // A skin point whose anchor jumps farther than this share of the skin's size within one interval
 // has been teleported with the body, not moved.
-constexpr double kJump = 0.2;
+constexpr double kAnchorJump = 0.2;
 // How much farther than its velocity says skin may come towards other skin within an interval.
 constexpr float kSelfReach = 0.002f;
 // Points that may slide only so far need no wider one, however hard a body is shaken.
@@ -42,12 +42,10 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
-constexpr FloatArray VectorArray::*kAxes[3] = {&VectorArray::x, &VectorArray::y, &VectorArray::z};
-
 bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anchorVelocity,
               float fastest, std::size_t k) {
   float speed = 0, place = 0;
-  for (const auto axis : kAxes) {
+  for (const auto axis : VectorArray::kAxes) {
     const float relative = (v.*axis)[k] - (anchorVelocity.*axis)[k];
     speed += relative * relative;
     place += (r.*axis)[k] * (r.*axis)[k];
@@ -156,7 +154,7 @@ void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinStat
   Stopwatch watch;
   coarseVelocity_.resize(coarseStart_.size());
   const auto rate = static_cast<float>(1 / duration_s);
-  for (const auto axis : kAxes)
+  for (const auto axis : VectorArray::kAxes)
     for (std::size_t k = 0; k < coarseStart_.size(); ++k)
       (coarseVelocity_.*axis)[k] = ((coarse.position.*axis)[k] - (coarseStart_.*axis)[k]) * rate;
   prolongation_.apply(coarseVelocity_, carrierNext_);
@@ -180,7 +178,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
   const float way = followAnchors(nextAnchor_, rate, ode_ || coarse_ ? nullptr : &carried(state),
                                   around, state.velocity);
   state.starting = false;
-  const auto jump = static_cast<float>(kJump * skin_->size_m());
+  const auto jump = static_cast<float>(kAnchorJump * skin_->size_m());
   if (!(way < jump * jump)) {
     // A posture jump: the skin jumps with the flesh and starts anew from there.
     carrySkin(*skin_, pose, state);
@@ -192,7 +190,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
   }
   skin_->placeFixed(pose, scratch_, target_);
   for (const std::size_t k : skin_->fixedPoints())
-    for (const auto axis : kAxes)
+    for (const auto axis : VectorArray::kAxes)
       (state.velocity.*axis)[k] = ((target_.*axis)[k] - (state.position.*axis)[k]) * rate;
 }
 
@@ -258,7 +256,7 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
 // Fixed points to where surround() has found that this interval's end carries them.
 void SkinStepper::takeFixed(VectorArray& position) const {
   for (const std::size_t k : skin_->fixedPoints())
-    for (const auto axis : kAxes) (position.*axis)[k] = (target_.*axis)[k];
+    for (const auto axis : VectorArray::kAxes) (position.*axis)[k] = (target_.*axis)[k];
 }
 
 // Tissue gives way only so far, however hard a body is shaken: points that are farther from their
@@ -303,7 +301,7 @@ void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stat
   SkinState carried;
   carrySkin(*skin_, pose, carried);
   for (const std::size_t k : points) {
-    for (const auto axis : kAxes) {
+    for (const auto axis : VectorArray::kAxes) {
       (state.position.*axis)[k] = (carried.position.*axis)[k];
       (state.velocity.*axis)[k] = (state.surroundings.anchorVelocity.*axis)[k];
     }

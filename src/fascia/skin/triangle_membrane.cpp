@@ -5,6 +5,9 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <fascia/math/points.h>
+#include <fascia/skin/plateau.h>
+
 namespace fascia {
 namespace {
 
@@ -16,19 +19,6 @@ constexpr double kShortest_m2 = 1e-12;  // squared longest edge of a triangle th
 // A sliver's stiffness against its own height grows with length over height. It would ask for short
 // steps of the whole skin, so it grows no further than at this height over length.
 constexpr double kSliver = 0.1;
-
-Vec3 pointAt(const VectorArray& a, std::size_t k) {
-  return {a.x[k], a.y[k], a.z[k]};
-}
-
-// Stress and energy of a strain that stops counting at the plateau.
-double plateauStress(double t, double limit) {
-  return std::clamp(t, -limit, limit);
-}
-double plateauEnergy(double t, double limit) {
-  const double s = std::abs(t);
-  return s <= limit ? 0.5 * s * s : limit * s - 0.5 * limit * limit;
-}
 
 // x_u = Σ u[i] r_i, x_v = Σ v[i] r_i over a triangle's corners.
 struct Gradients {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fascia/base/parallel.h>
+#include <fascia/math/points.h>
 #include <fascia/skin/elastic_grid.h>
 #include <fascia/skin/resample.h>
 
@@ -97,18 +98,12 @@ void relax(const Field& field, const GridLayout& g, const WrapOptions& options, 
   }
 }
 
-void set(VectorArray& a, std::size_t k, const Vec3& p) {
-  a.x[k] = static_cast<float>(p.x());
-  a.y[k] = static_cast<float>(p.y());
-  a.z[k] = static_cast<float>(p.z());
-}
-
 void setEnds(const GridLayout& g, const EndRing& bottom, const EndRing& top, const Vec3& upAxis,
              VectorArray& r) {
   for (int i = 0; i < g.columns; ++i) {
     const double u = static_cast<double>(i) / g.columns;
-    set(r, g.at(i, 0), ringPoint(bottom, upAxis, u));
-    set(r, g.at(i, g.rows - 1), ringPoint(top, upAxis, u));
+    setPoint(r, g.at(i, 0), ringPoint(bottom, upAxis, u));
+    setPoint(r, g.at(i, g.rows - 1), ringPoint(top, upAxis, u));
   }
   fillPads(g, r);
 }
@@ -133,8 +128,8 @@ VectorArray sphereAround(const Field& field, const GridLayout& g, const Vec3& up
     for (int i = 0; i < g.columns; ++i) {
       const double a = 2 * kPi * i / g.columns;
       const Vec3 around = -std::cos(a) * front - std::sin(a) * side;
-      set(r, g.at(i, j),
-          box.center() + radius * (std::sin(latitude) * around - std::cos(latitude) * upAxis));
+      setPoint(r, g.at(i, j),
+               box.center() + radius * (std::sin(latitude) * around - std::cos(latitude) * upAxis));
     }
   }
   return r;

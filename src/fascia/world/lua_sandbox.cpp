@@ -68,7 +68,7 @@ Issue explainCall(lua_State* L, const std::string& text) {
   lua_pushglobaltable(L);
   offerFunctions(L, nearest, true);
   lua_pop(L, 1);
-  return {{}, "there is no function " + quoted(name), nearest.hint()};
+  return {{}, "there is no function " + quotedName(name), nearest.hint()};
 }
 
 }  // namespace

@@ -15,6 +15,9 @@ struct ScriptParameter {
   bool repeated = false;  // any number of these
 };
 
+inline constexpr ScriptParameter kPointParameter{"point", "string",
+                                                 "a point of a body, by its name"};
+
 // What scripts can call. One description of each function makes the names in messages, the
 // completion in editors (schema/fascia-api.lua) and the page for readers (docs/scripting.md).
 struct ScriptFunction {

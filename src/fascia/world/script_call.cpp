@@ -21,7 +21,7 @@ std::string shown(lua_State* L, int index) {
     case LUA_TNUMBER:
       return shortNumber(lua_tonumber(L, index));
     case LUA_TSTRING: {
-      std::string text = quoted(lua_tostring(L, index));
+      std::string text = quotedName(lua_tostring(L, index));
       text.front() = text.back() = '"';
       return text;
     }

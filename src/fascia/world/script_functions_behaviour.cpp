@@ -50,7 +50,8 @@ void checkNames(lua_State* L, int index, const std::string& what,
     if (lua_type(L, -1) != LUA_TSTRING) continue;
     const std::string name = lua_tostring(L, -1);
     if (std::ranges::find(known, name) != known.end()) continue;
-    Issue issue{{}, what + ": found the unknown field " + quoted(name), didYouMean(name, known)};
+    Issue issue{
+        {}, what + ": found the unknown field " + quotedName(name), didYouMean(name, known)};
     throw Error(issue);
   }
 }
@@ -164,7 +165,6 @@ int parallelTasks(ScriptCall& call) {
 
 constexpr std::string_view kArrived =
     "whether it got there; a newer call for the same point ends an older one";
-constexpr ScriptParameter kPoint{"point", "string", "a point of a body, by its name"};
 constexpr ScriptParameter kSeconds{"seconds", "number", "how long it takes"};
 
 }  // namespace
@@ -172,7 +172,7 @@ constexpr ScriptParameter kSeconds{"seconds", "number", "how long it takes"};
 std::span<const ScriptFunction> behaviourFunctions() {
   static const std::vector<ScriptFunction> kFunctions = {
       {"grab",
-       {kPoint,
+       {kPointParameter,
         {"target", "target", "another point, which may move, or a place"},
         kSeconds,
         {"velocity", "place", "of the point on arrival, m/s; by default one that is easy to reach",
@@ -182,7 +182,7 @@ std::span<const ScriptFunction> behaviourFunctions() {
        "Chases the target and connects to it on arrival.",
        grab},
       {"chase",
-       {kPoint,
+       {kPointParameter,
         {"target", "target", "another point, which may move, or a place"},
         kSeconds,
         {"velocity", "place", "of the point on arrival, m/s; by default one that is easy to reach",
@@ -192,7 +192,7 @@ std::span<const ScriptFunction> behaviourFunctions() {
        "Takes the point to where the target will be, and lets it fly on from there.",
        chase},
       {"move",
-       {kPoint,
+       {kPointParameter,
         {"place", "target", "where to; of a moving point, where it is now"},
         kSeconds,
         {"velocity", "place", "on arrival, m/s; the point is let go then", true}},
@@ -201,7 +201,7 @@ std::span<const ScriptFunction> behaviourFunctions() {
        "Takes the point to a place and holds it there.",
        move},
       {"follow",
-       {kPoint,
+       {kPointParameter,
         {"keys", "key[]", "places at growing times, in seconds after the onset"},
         {"options", "follow_options", "preroll and onset", true}},
        "boolean",

@@ -53,36 +53,46 @@ int pull(ScriptCall& call) {
   return 0;
 }
 
-constexpr ScriptParameter kPoint{"point", "string", "a point of a body, by its name"};
-
 }  // namespace
 
 std::span<const ScriptFunction> controlFunctions() {
   static const std::vector<ScriptFunction> kFunctions = {
       {"connect",
-       {kPoint, {"target", "target", "a point of another body, or a place to nail it to"}},
+       {kPointParameter, {"target", "target", "a point of another body, or a place to nail it to"}},
        "",
        "",
        "Ties the point to the target: an impulse makes their velocities one, and what distance "
        "there is closes within a tenth of a second.",
        connect},
-      {"hold", {kPoint}, "", "", "Holds the point where it is.", hold},
+      {"hold", {kPointParameter}, "", "", "Holds the point where it is.", hold},
       {"release",
-       {kPoint, {"other", "string", "only from this point", true}},
+       {kPointParameter, {"other", "string", "only from this point", true}},
        "",
        "",
        "Lets the point go from everything that holds, leads, ties or pulls it; it flies on.",
        release},
-      {"stop", {kPoint}, "", "", "Stops the point dead by an impulse, and lets it go.", stop},
-      {"impulse", {kPoint, {"impulse", "place", "N s"}}, "", "", "A blow on the point.", impulse},
+      {"stop",
+       {kPointParameter},
+       "",
+       "",
+       "Stops the point dead by an impulse, and lets it go.",
+       stop},
+      {"impulse",
+       {kPointParameter, {"impulse", "place", "N s"}},
+       "",
+       "",
+       "A blow on the point.",
+       impulse},
       {"push",
-       {kPoint, {"force", "place", "N"}, {"seconds", "number", "how long; the call does not wait"}},
+       {kPointParameter,
+        {"force", "place", "N"},
+        {"seconds", "number", "how long; the call does not wait"}},
        "",
        "",
        "Pushes the point with a force for a time.",
        push},
       {"pull",
-       {kPoint,
+       {kPointParameter,
         {"target", "target", "another point or a place; call again to move it"},
         {"stiffness", "number", "N/m"},
         {"damping", "number", "N s/m; 0 by default", true}},

@@ -107,7 +107,8 @@ int field(lua_State* L) {
       if (key == method.name) return lua_pushcfunction(L, method.func), 1;
     NearestName nearest(key);
     for (const luaL_Reg& method : kMethods) nearest.offer(method.name);
-    Issue issue{{}, "a vec has no field " + quoted(key) + ", it has x, y and z", nearest.hint()};
+    Issue issue{
+        {}, "a vec has no field " + quotedName(key) + ", it has x, y and z", nearest.hint()};
     throw Error(issue);
   });
 }

@@ -25,10 +25,6 @@ constexpr std::size_t kMostCells = 4'000'000;
 // Every body has a square matrix of its coordinates: numbers of all of them together.
 constexpr std::size_t kMostMatrixNumbers = 50'000'000;
 
-std::string at(const std::string& pointer, std::size_t index) {
-  return pointer + "/" + std::to_string(index);
-}
-
 Transform placeOf(const Vec3& position_m, const Vec3& orientation_rad) {
   return {rotationZyx(orientation_rad), position_m};
 }
@@ -144,8 +140,8 @@ void repeatedNames(const auto& list, const std::string& pointer, Diagnostics& di
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < list.size(); ++i)
     if (!names.insert(list[i].name).second)
-      diagnostics.error(at(pointer, i) + "/name",
-                        "found " + fascia::quoted(list[i].name) + " a second time",
+      diagnostics.error(entryOf(pointer, i) + "/name",
+                        "found " + quotedName(list[i].name) + " a second time",
                         "give each a name of its own");
 }
 
@@ -172,7 +168,7 @@ Stage::Stage(SceneDef def) : def_(std::move(def)) {
 
 void Stage::addBody(std::size_t index, Diagnostics& diagnostics) {
   const SceneBodyDef& body = def_.bodies[index];
-  const std::string pointer = at("/bodies", index);
+  const std::string pointer = entryOf("/bodies", index);
   const bool flat = body.form == SceneBodyDef::Form::outline;
   if (flat != (def_.dimension == 2)) {
     diagnostics.error(pointer,
@@ -190,7 +186,7 @@ void Stage::addBody(std::size_t index, Diagnostics& diagnostics) {
   }
   std::vector<TriangleMesh> meshes;
   for (std::size_t i = 0; i < body.ornaments.size(); ++i) {
-    const Solid solid(body.ornaments[i].solid, at(pointer + "/ornaments", i), diagnostics);
+    const Solid solid(body.ornaments[i].solid, entryOf(pointer + "/ornaments", i), diagnostics);
     if (!diagnostics.ok()) continue;
     meshes.push_back(placedMesh(body.ornaments[i], solid));
     if (flat) raise(body.position_m.z(), meshes.back());
@@ -254,7 +250,8 @@ void Stage::addProps(Diagnostics& diagnostics) {
     solid.solid = prop.solid;
     props_.push_back({Flesh(flesh, skeleton, "", own), {}});
     for (const Issue& issue : own.errors())  // "/0/radius_m": the solid is the only one of its kind
-      diagnostics.error(at("/props", i) + issue.where.pointer.substr(2), issue.message, issue.hint);
+      diagnostics.error(entryOf("/props", i) + issue.where.pointer.substr(2), issue.message,
+                        issue.hint);
     if (own.ok()) props_.back().flesh.pose(rest, posed, {}, props_.back().posed);
   }
 }

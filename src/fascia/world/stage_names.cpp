@@ -11,10 +11,6 @@ namespace {
 
 using Kind = SceneConstraintDef::Kind;
 
-std::string at(const std::string& pointer, std::size_t index) {
-  return pointer + "/" + std::to_string(index);
-}
-
 void inRange(double value, double low, double high, const std::string& pointer,
              Diagnostics& diagnostics) {
   if (value >= low && value <= high) return;  // false for NaN
@@ -46,9 +42,9 @@ Takes pointsOf(Kind kind) {
 void Stage::addNames(Diagnostics& diagnostics) {
   for (std::size_t b = 0; b < def_.bodies.size(); ++b) {
     const SceneBodyDef& body = def_.bodies[b];
-    const std::string pointer = at("/bodies", b);
+    const std::string pointer = entryOf("/bodies", b);
     if (body.name.find('.') != std::string::npos)
-      diagnostics.error(pointer + "/name", "found " + fascia::quoted(body.name),
+      diagnostics.error(pointer + "/name", "found " + quotedName(body.name),
                         "a body's name has no '.': its points are called \"body.point\"");
     points_.push_back({body.name, {BodyId(b), model_.shape(BodyId(b)).center_m()}});
     for (const NamedPlaceDef& point : body.points)
@@ -57,8 +53,8 @@ void Stage::addNames(Diagnostics& diagnostics) {
   std::ranges::sort(points_, {}, &NamedBodyPoint::name);
   for (std::size_t i = 0; i < def_.places.size(); ++i)
     if (findPoint(def_.places[i].name))
-      diagnostics.error(at("/places", i) + "/name",
-                        fascia::quoted(def_.places[i].name) + " is a body already",
+      diagnostics.error(entryOf("/places", i) + "/name",
+                        quotedName(def_.places[i].name) + " is a body already",
                         "give the place another name");
 }
 
@@ -76,7 +72,7 @@ void Stage::checkPoint(const std::string& name, bool orPlace, const std::string&
                        Diagnostics& diagnostics) const {
   if (findPoint(name) || (orPlace && findPlace(name))) return;
   if (findPlace(name)) {
-    diagnostics.error(pointer, fascia::quoted(name) + " is a place, expected a body's point",
+    diagnostics.error(pointer, quotedName(name) + " is a place, expected a body's point",
                       "name a point as \"body.point\"");
     return;
   }
@@ -84,13 +80,13 @@ void Stage::checkPoint(const std::string& name, bool orPlace, const std::string&
   for (const NamedBodyPoint& point : points_) nearest.offer(point.name);
   if (orPlace)
     for (const NamedPlaceDef& place : def_.places) nearest.offer(place.name);
-  diagnostics.error(pointer, "no point is named " + fascia::quoted(name), nearest.hint());
+  diagnostics.error(pointer, "no point is named " + quotedName(name), nearest.hint());
 }
 
 void Stage::checkConstraints(Diagnostics& diagnostics) const {
   for (std::size_t i = 0; i < def_.constraints.size(); ++i) {
     const SceneConstraintDef& def = def_.constraints[i];
-    const std::string pointer = at("/constraints", i);
+    const std::string pointer = entryOf("/constraints", i);
     const Takes takes = pointsOf(def.kind);
     if (def.points.size() < takes.least || def.points.size() > takes.most) {
       diagnostics.error(pointer + "/points",
@@ -100,7 +96,7 @@ void Stage::checkConstraints(Diagnostics& diagnostics) const {
       continue;
     }
     for (std::size_t p = 0; p < def.points.size(); ++p)
-      checkPoint(def.points[p], p > 0, at(pointer + "/points", p), diagnostics);
+      checkPoint(def.points[p], p > 0, entryOf(pointer + "/points", p), diagnostics);
     if ((def.kind == Kind::line || def.kind == Kind::plane) && !(def.direction.norm() > 0))
       diagnostics.error(pointer + "/direction", "found no direction, expected any length but 0");
   }
@@ -109,13 +105,13 @@ void Stage::checkConstraints(Diagnostics& diagnostics) const {
 void Stage::checkPaths(Diagnostics& diagnostics) const {
   for (std::size_t i = 0; i < def_.paths.size(); ++i) {
     const ScenePathDef& path = def_.paths[i];
-    const std::string pointer = at("/paths", i);
+    const std::string pointer = entryOf("/paths", i);
     checkPoint(path.point, false, pointer + "/point", diagnostics);
     if (path.keys.empty())
       diagnostics.error(pointer + "/keys", "found no keys, expected at least one");
     for (std::size_t k = 1; k < path.keys.size(); ++k)
       if (!(path.keys[k].time_s > path.keys[k - 1].time_s))
-        diagnostics.error(at(pointer + "/keys", k) + "/time_s",
+        diagnostics.error(entryOf(pointer + "/keys", k) + "/time_s",
                           "found " + shortNumber(path.keys[k].time_s) + " after " +
                               shortNumber(path.keys[k - 1].time_s),
                           "keys are in the order of their times");
@@ -130,7 +126,7 @@ void Stage::checkSimulation(Diagnostics& diagnostics) const {
   const bool contact = def_.ground || !def_.props.empty() || !def_.characters.empty();
   if (s.scheme != "implicit" && contact)
     diagnostics.error("/simulation/scheme",
-                      "found " + fascia::quoted(s.scheme) + ", but contact needs \"implicit\"",
+                      "found " + quotedName(s.scheme) + ", but contact needs \"implicit\"",
                       "without ground, props and characters the others can be used");
 }
 

@@ -37,7 +37,7 @@ Issue unknown(const RiggedModel& model, const std::string& name) {
   }
   Issue issue;
   issue.message =
-      "no motion is named " + fascia::quoted(name) + "; there are: " + (all.empty() ? "none" : all);
+      "no motion is named " + quotedName(name) + "; there are: " + (all.empty() ? "none" : all);
   issue.hint = didYouMean(name, names);
   return issue;
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kHeadings =
     "                    new             lumpiness    edge stretch     slide (mm)";
-constexpr const char* kColumns =
+constexpr const char* kTableHead =
     "              crossings turned    RMS    99 %    99 % largest    RMS largest";
 
 Json number(double value) {
@@ -39,7 +39,7 @@ void sayStageHeading(const StageResult& stage, const std::string& more, const Co
   console.say(fmt::format("\n{}{}", stage.name, more));
   console.say(fmt::format("{}   {}", kHeadings,
                           stage.isPose ? "volume lost (%)" : "jitter   time per frame"));
-  console.say(fmt::format("{}   {}", kColumns,
+  console.say(fmt::format("{}   {}", kTableHead,
                           stage.isPose ? "  total at rest" : "  (µm)     ms µs/point"));
 }
 

@@ -8,6 +8,7 @@
 #include <fascia/base/error.h>
 #include <fascia/field/field.h>
 #include <fascia/field/solid.h>
+#include <fascia/math/points.h>
 #include <fascia/skin/flesh_contact.h>
 #include <fascia/skin/leapfrog.h>
 
@@ -69,12 +70,6 @@ class Spheres final : public Field {
   std::array<Transform, kCount> frame_;
   std::array<Vec3, kCount> velocity_;
 };
-
-void setPoint(VectorArray& a, std::size_t k, const Vec3& p) {
-  a.x[k] = static_cast<float>(p.x());
-  a.y[k] = static_cast<float>(p.y());
-  a.z[k] = static_cast<float>(p.z());
-}
 
 ElasticGrid makeElastic(const SheetScene& scene, const GridLayout& g, double stiffness_N_per_m) {
   VectorArray rest(g.storage());

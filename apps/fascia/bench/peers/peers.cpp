@@ -18,7 +18,7 @@
 namespace fascia {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kPeersFooter =
     R"(A sheet of 2 m x 2 m and 1 kg, pinned at two edges, over seven moving spheres: once in Bullet's
 soft body and once in Fascia, one thread each, in turn. Bullet's links are as stiff as it allows:
 how far they stretch depends on how often they are solved. For each of its settings Fascia runs
@@ -171,7 +171,7 @@ void addPeersBench(CLI::App& group, Console& console) {
       ->type_name("N")
       ->check(numberIn(12, 1e5));
   console.addFlags(command);
-  command.footer(kFooter);
+  command.footer(kPeersFooter);
   command.callback([options, &console] { runPeers(*options, console); });
 }
 

@@ -12,8 +12,8 @@ constexpr double kSwing_m = 0.5, kSwing_hz = 0.5;
 // The spheres' swing grows to its full size in this time.
 constexpr double kFadeIn_s = 1;
 // Frames before anything is measured: the swing is full and periodic by then.
-constexpr int kWarmFrames = 120;
-constexpr int kMeasureEvery = 6;
+constexpr int kSheetWarmFrames = 120;
+constexpr int kSheetMeasureEvery = 6;
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -78,13 +78,13 @@ Vec3 SheetScene::sphereVelocity(int sphere, double time_s) {
 SheetResult measureSheet(const SheetScene& scene, SheetSolver& solver, int frames) {
   std::vector<double> frame_s, largest, nearlyLargest, depth_m;
   SheetResult result;
-  for (int f = 0; f < kWarmFrames + frames; ++f) {
+  for (int f = 0; f < kSheetWarmFrames + frames; ++f) {
     const auto begin = std::chrono::steady_clock::now();
     solver.advanceFrame();
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    if (f < kWarmFrames) continue;
+    if (f < kSheetWarmFrames) continue;
     frame_s.push_back(spent.count());
-    if (f % kMeasureEvery != 0) continue;
+    if (f % kSheetMeasureEvery != 0) continue;
     std::vector<double> all = stretches(scene, solver);
     for (const double s : all) result.finite = result.finite && std::isfinite(s);
     const auto rank = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(all.size()));

@@ -1,5 +1,5 @@
-#include <fascia/body/bases/check_basis.h>
 #include <fascia/body/basis.h>
+#include <fascia/body/check_range.h>
 
 namespace fascia {
 namespace {
@@ -28,7 +28,7 @@ class AffineBasis final : public Basis {
 }  // namespace
 
 BasisPtr makeAffineBasis(int dimension) {
-  checkBasisNumber("dimension", dimension, 2, 3);
+  checkRange("basis", "dimension", dimension, 2, 3);
   return std::make_shared<AffineBasis>(dimension);
 }
 

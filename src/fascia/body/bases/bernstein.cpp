@@ -1,17 +1,15 @@
 #include <array>
 #include <cmath>
 
-#include <fascia/body/bases/check_basis.h>
 #include <fascia/body/basis.h>
+#include <fascia/body/check_range.h>
 
 namespace fascia {
 namespace {
 
-constexpr int kMaxCells = 6;
-
 // All Bernstein polynomials of one degree at u, and their derivatives by u.
 struct Bernstein {
-  std::array<double, kMaxCells + 1> value{}, slope{};
+  std::array<double, kMaxLatticeCells + 1> value{}, slope{};
 };
 
 Bernstein bernsteinAt(int degree, double u) {
@@ -77,10 +75,10 @@ class BernsteinBasis final : public Basis {
 }  // namespace
 
 BasisPtr makeBernsteinBasis(int dimension, const Eigen::Vector3i& cells, const Box& domain) {
-  checkBasisNumber("dimension", dimension, 2, 3);
+  checkRange("basis", "dimension", dimension, 2, 3);
   for (int axis = 0; axis < dimension; ++axis) {
-    checkBasisNumber("cells along an axis", cells[axis], 1, kMaxCells);
-    checkBasisNumber("edge of the domain (m)", domain.size()[axis], 1e-9, 1e9);
+    checkRange("basis", "cells along an axis", cells[axis], 1, kMaxLatticeCells);
+    checkRange("basis", "edge of the domain (m)", domain.size()[axis], 1e-9, 1e9);
   }
   return std::make_shared<BernsteinBasis>(dimension, cells, domain);
 }

@@ -2,14 +2,13 @@
 #include <cmath>
 #include <vector>
 
-#include <fascia/body/bases/check_basis.h>
 #include <fascia/body/basis.h>
+#include <fascia/body/check_range.h>
 
 namespace fascia {
 namespace {
 
-constexpr int kMaxOrder = 8;
-using Powers = std::array<double, kMaxOrder + 1>;
+using Powers = std::array<double, kMaxPolynomialOrder + 1>;
 
 Powers powersOf(double x) {
   Powers powers{1};
@@ -70,10 +69,10 @@ class PolynomialBasis final : public Basis {
 }  // namespace
 
 BasisPtr makePolynomialBasis(int dimension, int order, const Box& domain) {
-  checkBasisNumber("dimension", dimension, 2, 3);
-  checkBasisNumber("order", order, 1, kMaxOrder);
+  checkRange("basis", "dimension", dimension, 2, 3);
+  checkRange("basis", "order", order, 1, kMaxPolynomialOrder);
   for (int axis = 0; axis < dimension; ++axis)
-    checkBasisNumber("edge of the domain (m)", domain.size()[axis], 1e-9, 1e9);
+    checkRange("basis", "edge of the domain (m)", domain.size()[axis], 1e-9, 1e9);
   return std::make_shared<PolynomialBasis>(dimension, order, domain);
 }
 

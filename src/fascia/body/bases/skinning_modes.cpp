@@ -4,8 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <fascia/body/bases/check_basis.h>
 #include <fascia/body/basis.h>
+#include <fascia/body/check_range.h>
 
 namespace fascia {
 namespace {
@@ -192,11 +192,11 @@ class SkinningModesBasis final : public Basis {
 
 BasisPtr makeSkinningModesBasis(int dimension, int modes, const Box& domain, double cell_m,
                                 const std::function<bool(const Vec3&)>& inside) {
-  checkBasisNumber("dimension", dimension, 2, 3);
-  checkBasisNumber("cell_m", cell_m, 1e-9, 1e9);
+  checkRange("basis", "dimension", dimension, 2, 3);
+  checkRange("basis", "cell_m", cell_m, 1e-9, 1e9);
   CellGrid grid(dimension, domain, cell_m, inside);
-  checkBasisNumber("nodes of the body's cells", grid.nodeCount(), 1, kMaxNodes);
-  checkBasisNumber("modes", modes, 1, grid.nodeCount());
+  checkRange("basis", "nodes of the body's cells", grid.nodeCount(), 1, kMaxNodes);
+  checkRange("basis", "modes", modes, 1, grid.nodeCount());
   return std::make_shared<SkinningModesBasis>(dimension, modes, std::move(grid));
 }
 

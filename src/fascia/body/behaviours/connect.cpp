@@ -13,7 +13,7 @@ class Connect final : public Behaviour {
     puppet.checkTarget(target_);
     const auto* other = std::get_if<PuppetPointId>(&target_);
     if (other && puppet.samePoint(point_, *other))
-      throw Error(quoted(puppet.name(point_)) + " cannot be connected to itself");
+      throw Error(quotedName(puppet.name(point_)) + " cannot be connected to itself");
   }
   Progress update(Puppet& puppet, double) override {
     puppet.connect(point_, target_);

@@ -8,7 +8,7 @@ namespace fascia {
 
 namespace {
 
-constexpr std::array<ParameterInfo, 1> kParameters{
+constexpr std::array<ParameterInfo, 1> kBendParameters{
     {{"angle_rad", 0, -kPi, kPi, "between the two ends; positive bends towards +x"}}};
 
 constexpr double kLeastStretch = 0.1;  // of the inner side: smaller makes distances there poor
@@ -21,7 +21,7 @@ constexpr double kLeastStretch = 0.1;  // of the inner side: smaller makes dista
 class BendDeformation final : public Deformation {
  public:
   std::string_view name() const override { return "bend"; }
-  std::span<const ParameterInfo> parameters() const override { return kParameters; }
+  std::span<const ParameterInfo> parameters() const override { return kBendParameters; }
 
   Vec3 forward(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
     if (p[0] == 0) return x;

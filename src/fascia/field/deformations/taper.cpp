@@ -8,7 +8,7 @@ namespace fascia {
 
 namespace {
 
-constexpr std::array<ParameterInfo, 1> kParameters{
+constexpr std::array<ParameterInfo, 1> kTaperParameters{
     {{"amount", 0, -0.95, 0.95, "the +z end grows by this share, the -z end shrinks by it"}}};
 
 // Barr 1984, §3.2, tapering along z with r = f(z) = 1 + amount z / zHalf:
@@ -16,7 +16,7 @@ constexpr std::array<ParameterInfo, 1> kParameters{
 class TaperDeformation final : public Deformation {
  public:
   std::string_view name() const override { return "taper"; }
-  std::span<const ParameterInfo> parameters() const override { return kParameters; }
+  std::span<const ParameterInfo> parameters() const override { return kTaperParameters; }
   Vec3 forward(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
     const double f = scale(p, zHalf_m, x.z());
     return {f * x.x(), f * x.y(), x.z()};

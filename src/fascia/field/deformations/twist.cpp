@@ -8,7 +8,7 @@ namespace fascia {
 
 namespace {
 
-constexpr std::array<ParameterInfo, 1> kParameters{
+constexpr std::array<ParameterInfo, 1> kTwistParameters{
     {{"angle_rad", 0, -2 * kPi, 2 * kPi, "turn of the +z end against the -z end"}}};
 
 // Barr 1984, §3.3, axial twist with θ(z) = rate z, rate = angle / (2 zHalf):
@@ -16,7 +16,7 @@ constexpr std::array<ParameterInfo, 1> kParameters{
 class TwistDeformation final : public Deformation {
  public:
   std::string_view name() const override { return "twist"; }
-  std::span<const ParameterInfo> parameters() const override { return kParameters; }
+  std::span<const ParameterInfo> parameters() const override { return kTwistParameters; }
   Vec3 forward(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
     return turned(angle(p, zHalf_m, x.z()), x);
   }

@@ -10,14 +10,14 @@ namespace fascia {
 
 namespace {
 
-constexpr std::array<ParameterInfo, 2> kParameters{
+constexpr std::array<ParameterInfo, 2> kCapsuleParameters{
     {{"radius_m", 0.1, 1e-4, 100, "distance of the surface from the axis"},
      {"half_length_m", 0.1, 0, 100, "half the length of the axis, without the round ends"}}};
 
 class Capsule final : public Shape {
  public:
   std::string_view name() const override { return "capsule"; }
-  std::span<const ParameterInfo> parameters() const override { return kParameters; }
+  std::span<const ParameterInfo> parameters() const override { return kCapsuleParameters; }
   double volume_m3(std::span<const double> p) const override {
     return kPi * p[0] * p[0] * (4.0 / 3.0 * p[0] + 2 * p[1]);
   }

@@ -8,34 +8,30 @@ namespace fascia {
 
 namespace {
 
-constexpr std::array<ParameterInfo, 5> kParameters{
+constexpr std::array<ParameterInfo, 5> kCylinderParameters{
     {{"half_x_m", 0.1, 1e-4, 100, "half size along x"},
      {"half_y_m", 0.1, 1e-4, 100, "half size along y"},
      {"half_z_m", 0.2, 1e-4, 100, "half size along z"},
      {"rounding", 0.2, 0.1, 1, "of the rims (exponent e1): 0.1 sharp, 1 an ellipsoid"},
      {"exponent_e2", 1, 0.1, 2, "around z: 0.1 square, 1 round, 2 diamond"}}};
 
-Superquadric superquadric(std::span<const double> p) {
-  return {Vec3(p[0], p[1], p[2]), p[3], p[4]};
-}
-
-// A superquadric cylinder, closed by flat ends with rounded rims: the superellipsoid of small e1.
+// A superquadricOf cylinder, closed by flat ends with rounded rims: the superellipsoid of small e1.
 class Cylinder final : public Shape {
  public:
   std::string_view name() const override { return "cylinder"; }
-  std::span<const ParameterInfo> parameters() const override { return kParameters; }
+  std::span<const ParameterInfo> parameters() const override { return kCylinderParameters; }
   double volume_m3(std::span<const double> p) const override {
-    return fascia::volume_m3(superquadric(p));
+    return fascia::volume_m3(superquadricOf(p));
   }
-  Vec3 halfExtents_m(std::span<const double> p) const override { return superquadric(p).half_m; }
+  Vec3 halfExtents_m(std::span<const double> p) const override { return superquadricOf(p).half_m; }
   double gauge(std::span<const double> p, const Vec3& x) const override {
-    return fascia::gauge(superquadric(p), x);
+    return fascia::gauge(superquadricOf(p), x);
   }
   TriangleMesh tessellate(std::span<const double> p, int detail) const override {
-    return fascia::tessellate(superquadric(p), detail);
+    return fascia::tessellate(superquadricOf(p), detail);
   }
   PrimitiveKernel kernel(std::span<const double> p) const override {
-    return fascia::kernel(superquadric(p));
+    return fascia::kernel(superquadricOf(p));
   }
 };
 

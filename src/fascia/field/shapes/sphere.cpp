@@ -8,13 +8,13 @@ namespace fascia {
 
 namespace {
 
-constexpr std::array<ParameterInfo, 1> kParameters{
+constexpr std::array<ParameterInfo, 1> kSphereParameters{
     {{"radius_m", 0.1, 1e-4, 100, "distance of the surface from the centre"}}};
 
 class Sphere final : public Shape {
  public:
   std::string_view name() const override { return "sphere"; }
-  std::span<const ParameterInfo> parameters() const override { return kParameters; }
+  std::span<const ParameterInfo> parameters() const override { return kSphereParameters; }
   double volume_m3(std::span<const double> p) const override {
     return 4.0 / 3.0 * kPi * p[0] * p[0] * p[0];
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include <fascia/field/kernels.h>
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/math/types.h>
@@ -13,6 +15,11 @@ struct Superquadric {
   double northSouth_e1 = 1;    // [0.1, 2]: 0.1 nearly flat ends, 1 round, 2 conical
   double eastWest_e2 = 1;  // [0.1, 2]: the cross-section: 0.1 nearly square, 1 round, 2 a diamond
 };
+
+// From a shape's parameters: half sizes, e1, e2.
+inline Superquadric superquadricOf(std::span<const double> p) {
+  return {Vec3(p[0], p[1], p[2]), p[3], p[4]};
+}
 
 double volume_m3(const Superquadric& s);
 double gauge(const Superquadric& s, const Vec3& x);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <fascia/base/index.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia::cholesky {
@@ -14,10 +15,6 @@ using Matrix = Eigen::MatrixXd;
 
 // A pivot that elimination made smaller than this share of its diagonal entry is rounding.
 constexpr double kLeastPivot = 1e-14;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 class Multifrontal {
  public:

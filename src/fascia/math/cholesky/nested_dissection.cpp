@@ -6,6 +6,7 @@
 
 #include <Eigen/OrderingMethods>
 
+#include <fascia/base/index.h>
 #include <fascia/base/parallel.h>
 #include <fascia/math/cholesky/separator.h>
 
@@ -15,10 +16,6 @@ namespace {
 // Parts of so few nodes are not split further: twice as many save a third of the time, for 2 % more
 // fill.
 constexpr std::size_t kLeafSize = 200;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Fewer nodes than this are ordered faster than another thread starts.
 constexpr std::size_t kWorthSharing = 1000;

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <queue>
 
+#include <fascia/base/index.h>
 #include <fascia/base/random.h>
 
 namespace fascia::cholesky {
@@ -14,10 +15,6 @@ constexpr int kTries = 4;
 constexpr int kPasses = 3;
 constexpr int kPatience = 40;
 constexpr double kLargestPart = 0.6;  // of the weight
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 template <class Use>
 void forNeighbours(const WeightedGraph& graph, int node, Use&& use) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fascia/base/index.h>
+
 namespace fascia::cholesky {
 namespace {
 
@@ -9,10 +11,6 @@ namespace {
 constexpr double kShare = 1.0 / 12;
 // Fewer entries of the factor than this are not worth a task: about 10 microseconds.
 constexpr double kSmallest = 20e3;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 double entries(const Supernode& node) {
   return node.width * (0.5 * node.width + static_cast<double>(node.below.size()));

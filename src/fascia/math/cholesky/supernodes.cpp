@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include <fascia/base/index.h>
+
 namespace fascia::cholesky {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::vector<int> inverse(const std::vector<int>& order) {
   std::vector<int> place(order.size());

@@ -1,11 +1,11 @@
-#include <fascia/field/affine_points.h>
+#include <fascia/field/affine_kernels.h>
 
 #include <algorithm>
 
 // SSSE3 and AVX3_DL add code, not speed, here.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "fascia/field/affine_points.cpp"
+#define HWY_TARGET_INCLUDE "fascia/field/affine_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
