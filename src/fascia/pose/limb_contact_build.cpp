@@ -13,6 +13,8 @@ using Eigen::Vector3f;
 // Skin so far below its own limb's surface, in radii, is an inner layer (teeth, eyes) and meets
 // nobody.
 constexpr float kInner = 0.4f;
+// Points of a piece on another limb that are more than its rim.
+constexpr std::size_t kLeastOfPiece = 12;
 constexpr float kNobody = 1e9f;
 constexpr std::size_t kClusterPoints = 32;
 
@@ -70,6 +72,9 @@ void LimbContact::findPairs(const PoseSource& source, const PoseMesh& mesh) {
 bool LimbContact::addPair(const PoseSource& source, const PoseMesh& mesh, std::uint32_t a,
                           std::uint32_t b) {
   const LimbPart &own = parts_->part[a], &other = parts_->part[b];
+  // Only a piece that goes on over the other limb folds against it; a panel turns inside of others.
+  std::map<std::uint32_t, std::size_t> onOther;
+  for (const std::uint32_t i : parts_->skin[b]) ++onOther[mesh.piece[i]];
   std::vector<float> overlaps;
   std::size_t clear = 0, bad = 0;
   for (const std::uint32_t i : parts_->skin[a]) {
@@ -79,7 +84,10 @@ bool LimbContact::addPair(const PoseSource& source, const PoseMesh& mesh, std::u
       ++clear;
       if (overlap > 0.1f * other.meanRadius_m()) ++bad;
     }
-    overlaps.push_back(parts_->own_m[i] < -kInner * own.meanRadius_m() ? kNobody : overlap);
+    const auto goesOn = onOther.find(mesh.piece[i]);
+    const bool alone = goesOn == onOther.end() || goesOn->second < kLeastOfPiece;
+    overlaps.push_back(alone || parts_->own_m[i] < -kInner * own.meanRadius_m() ? kNobody
+                                                                                : overlap);
   }
   if (clear == 0 || 10 * bad > clear) return false;
   pairsOf_[a].push_back(static_cast<std::uint32_t>(pairs_.size()));
