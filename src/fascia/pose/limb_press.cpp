@@ -19,7 +19,7 @@ constexpr float kLeastSoftLimb = 0.15f, kLeastSoftSkin = 0.02f;
 // Kept between the two, and how near at rest is a touch already, in radii of the soft limb.
 constexpr float kPressMargin = 0.02f, kTouching = 0.6f;
 // Depths in radii of the soft limb, between which a contact lets go, and how far flesh gives way.
-constexpr float kPressHolds = 0.2f, kPressLetsGo = 0.8f, kPressFarthest = 0.25f;
+constexpr float kPressHolds = 0.05f, kPressLetsGo = 0.8f, kPressFarthest = 0.25f;
 // How far from the bone, in radii, what presses is wholly on this side of it.
 constexpr float kThisSide = 0.15f;
 // Where a dent has faded out: so many edges and depths beyond its core.
