@@ -8,7 +8,7 @@
 
 #include <fascia/baking/morph_basis.h>
 #include <fascia/base/parallel.h>
-#include <fascia/io/rig_import.h>
+#include <fascia/io/rig_import/rig_import.h>
 #include <fascia/rig/dual_quaternion.h>
 
 namespace fascia {

@@ -4,7 +4,7 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/types.h>
-#include <fascia/skin/self_contact.h>
+#include <fascia/skin/self_contact/self_contact.h>
 
 namespace fascia {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include <fascia/io/character_file.h>
-#include <fascia/skin/flesh_contact.h>
-#include <fascia/skin/wrap.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/skin/contact/flesh_contact.h>
+#include <fascia/skin/grid/wrap.h>
 
 namespace fascia {
 namespace {

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include <fascia/base/error.h>
-#include <fascia/io/bvh.h>
+#include <fascia/io/motion/bvh.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <fascia/io/cache.h>
+#include <fascia/io/cache/cache.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <fascia/io/character_file.h>
+#include <fascia/io/documents/character_file.h>
 
 namespace {
 

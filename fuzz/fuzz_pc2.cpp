@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <fascia/io/pc2.h>
+#include <fascia/io/cache/pc2.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include <fascia/io/scene_file.h>
+#include <fascia/io/documents/scene_file.h>
 #include <fascia/world/performance.h>
 
 namespace fascia {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include <fascia/base/error.h>
-#include <fascia/body/body_stepper.h>
+#include <fascia/deformable/solve/body_stepper.h>
 #include <fascia/world/script.h>
 
 namespace fascia {

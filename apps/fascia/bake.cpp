@@ -4,12 +4,12 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/parallel.h>
-#include <fascia/io/cache.h>
-#include <fascia/io/gltf_writer.h>
-#include <fascia/io/mdd.h>
-#include <fascia/io/pc2.h>
-#include <fascia/io/scene_file.h>
-#include <fascia/io/stats_writer.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/mdd.h>
+#include <fascia/io/cache/pc2.h>
+#include <fascia/io/documents/scene_file.h>
+#include <fascia/io/documents/stats_writer.h>
+#include <fascia/io/glb_export/gltf_writer.h>
 
 #include "commands.h"
 #include "grid_bake.h"

@@ -1,5 +1,5 @@
-#include <fascia/io/cache.h>
-#include <fascia/io/stats_writer.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/documents/stats_writer.h>
 #include <fascia/render/character_scene.h>
 
 #include "film.h"

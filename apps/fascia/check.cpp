@@ -1,8 +1,8 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
-#include <fascia/io/character_file.h>
-#include <fascia/io/scene_file.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/io/documents/scene_file.h>
 #include <fascia/render/camera.h>
 #include <fascia/world/performance.h>
 

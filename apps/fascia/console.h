@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <fascia/base/error.h>
-#include <fascia/io/json.h>
+#include <fascia/io/json/json.h>
 
 namespace CLI {
 class App;

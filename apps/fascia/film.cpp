@@ -1,9 +1,9 @@
 #include "film.h"
 
-#include <fascia/io/cache.h>
-#include <fascia/io/image.h>
-#include <fascia/io/scene_cache.h>
-#include <fascia/io/scene_file.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/scene_cache.h>
+#include <fascia/io/documents/scene_file.h>
+#include <fascia/io/picture/image.h>
 
 #include <fmt/core.h>
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include <fascia/character/character.h>
-#include <fascia/io/texture.h>
+#include <fascia/io/picture/texture.h>
 #include <fascia/render/rig_surface.h>
 
 #include "console.h"

@@ -7,11 +7,11 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/fitting/fit_flesh.h>
-#include <fascia/io/character_file.h>
-#include <fascia/io/file.h>
-#include <fascia/io/gltf_document.h>
-#include <fascia/io/rig_import.h>
-#include <fascia/io/rig_to_gltf.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/gltf/gltf_document.h>
+#include <fascia/io/rig_import/rig_import.h>
+#include <fascia/io/rig_import/rig_to_gltf.h>
 #include <fascia/pose/softness.h>
 
 #include "commands.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <fascia/character/recording.h>
-#include <fascia/io/grid_writer.h>
+#include <fascia/io/glb_export/grid_writer.h>
 
 #include "console.h"
 #include "rig_bake.h"

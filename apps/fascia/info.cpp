@@ -2,11 +2,11 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/parallel.h>
-#include <fascia/io/cache.h>
-#include <fascia/io/character_file.h>
-#include <fascia/io/rig_import.h>
-#include <fascia/io/scene_cache.h>
-#include <fascia/io/scene_file.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/scene_cache.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/io/documents/scene_file.h>
+#include <fascia/io/rig_import/rig_import.h>
 #include <fascia/math/ode/integrators.h>
 #include <fascia/render/gl_context.h>
 

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <fascia/io/bvh.h>
-#include <fascia/io/file.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/motion/bvh.h>
 #include <fascia/rig/retarget.h>
 
 namespace fascia {

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include <fascia/base/hash.h>
-#include <fascia/io/stats_writer.h>
+#include <fascia/io/documents/stats_writer.h>
 
 namespace fascia {
 

@@ -2,9 +2,9 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/parallel.h>
-#include <fascia/io/file.h>
-#include <fascia/io/image.h>
-#include <fascia/io/video_writer.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/picture/image.h>
+#include <fascia/io/picture/video_writer.h>
 #include <fascia/render/character_scene.h>
 #include <fascia/render/renderer.h>
 

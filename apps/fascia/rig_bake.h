@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/character/recording.h>
-#include <fascia/io/rig_writer.h>
+#include <fascia/io/rig_export/rig_writer.h>
 
 #include "console.h"
 #include "takes.h"

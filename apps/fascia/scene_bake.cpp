@@ -2,12 +2,12 @@
 
 #include <filesystem>
 
-#include <fascia/io/file.h>
-#include <fascia/io/mdd.h>
-#include <fascia/io/pc2.h>
-#include <fascia/io/scene_cache.h>
-#include <fascia/io/scene_gltf.h>
-#include <fascia/io/stats_writer.h>
+#include <fascia/io/cache/mdd.h>
+#include <fascia/io/cache/pc2.h>
+#include <fascia/io/cache/scene_cache.h>
+#include <fascia/io/documents/stats_writer.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/glb_export/scene_gltf.h>
 #include <fascia/world/stage_surface.h>
 
 #include "interrupt.h"

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/suggest.h>
-#include <fascia/io/character_file.h>
+#include <fascia/io/documents/character_file.h>
 #include <fascia/math/ode/integrators.h>
 
 #include "interrupt.h"

@@ -7,7 +7,7 @@
 
 #include <fascia/character/character.h>
 #include <fascia/character/recording.h>
-#include <fascia/io/character_file.h>
+#include <fascia/io/documents/character_file.h>
 
 #include "console.h"
 

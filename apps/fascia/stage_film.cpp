@@ -1,6 +1,6 @@
-#include <fascia/io/cache.h>
-#include <fascia/io/scene_cache.h>
-#include <fascia/io/stats_writer.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/scene_cache.h>
+#include <fascia/io/documents/stats_writer.h>
 #include <fascia/render/stage_scene.h>
 
 #include "film.h"

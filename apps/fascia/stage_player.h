@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include <fascia/io/texture.h>
+#include <fascia/io/picture/texture.h>
 #include <fascia/render/stage_scene.h>
 #include <fascia/world/stage_recording.h>
 

@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include <fascia/io/scene_file.h>
-#include <fascia/io/stats_writer.h>
+#include <fascia/io/documents/scene_file.h>
+#include <fascia/io/documents/stats_writer.h>
 
 #include "interrupt.h"
 #include "progress.h"

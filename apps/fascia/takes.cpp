@@ -10,7 +10,7 @@
 
 #include <fascia/baking/close_cycle.h>
 #include <fascia/flesh/bind.h>
-#include <fascia/io/character_file.h>
+#include <fascia/io/documents/character_file.h>
 #include <fascia/render/rig_joints.h>
 #include <fascia/rig/blend_skinning.h>
 

@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/parallel.h>
-#include <fascia/io/character_file.h>
+#include <fascia/io/documents/character_file.h>
 
 #include "solvers/timeline.h"
 

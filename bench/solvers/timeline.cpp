@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ctime>
 
-#include <fascia/skin/flesh_contact.h>
+#include <fascia/skin/contact/flesh_contact.h>
 
 #include "solvers/scalar_point.h"
 

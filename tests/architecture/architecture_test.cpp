@@ -51,6 +51,20 @@ TEST(Architecture, RefusesAnArrowThatPointsInward) {
   EXPECT_EQ(found[0], "field/a.h:2: includes <fascia/skin/skin.h>, but field may not use skin");
 }
 
+TEST(Architecture, RefusesAnArrowBetweenFoldersThatPointsInward) {
+  const std::string solver = "#include <fascia/deformable/solve/body_system.h>\n";
+  const auto found = violationsOf("deformable/body/a.h", solver);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0],
+            "deformable/body/a.h:1: includes <fascia/deformable/solve/body_system.h>, but "
+            "deformable/body may not use deformable/solve");
+  EXPECT_TRUE(violationsOf("deformable/puppet/a.h", solver).empty());
+}
+
+TEST(Architecture, RefusesAFolderThatTheTableDoesNotName) {
+  EXPECT_EQ(violationsOf("deformable/surprise/a.h", "#pragma once\n").size(), 1u);
+}
+
 TEST(Architecture, RefusesFilesBelowIo) {
   EXPECT_EQ(violationsOf("skin/a.cpp", "#include <fstream>\n").size(), 1u);
   EXPECT_EQ(violationsOf("render/a.cpp", "auto* f = fopen(p, \"r\");\n").size(), 1u);

@@ -43,15 +43,28 @@ const std::vector<Rule>& rules() {
   return all;
 }
 
+// "io" of io/json/json.h
+std::string moduleOf(const fs::path& file) {
+  return file.begin()->string();
+}
+
+// "io/json" of io/json/json.h
+std::string folderOf(const fs::path& file) {
+  return file.parent_path().generic_string();
+}
+
 class Checker {
  public:
   explicit Checker(const Arrows& arrows) : arrows_(arrows) {}
 
-  void check(const std::string& module, const fs::path& shown, const fs::path& file) {
+  void check(const fs::path& shown, const fs::path& file) {
+    const std::string module = moduleOf(shown);
+    if (hasFolders(module) && folderOf(shown) != module && !arrows_.contains(folderOf(shown)))
+      complainOfMissing(shown, "folder " + folderOf(shown));
     const std::vector<std::string> lines = readLines(file);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const std::string place = shown.generic_string() + ":" + std::to_string(i + 1) + ": ";
-      checkArrow(module, place, lines[i]);
+      checkArrow(shown, place, lines[i]);
       const std::string code = withoutCommentAndText(lines[i]);
       for (const Rule& rule : rules())
         if (module != rule.owner && std::regex_search(code, rule.pattern))
@@ -59,15 +72,34 @@ class Checker {
     }
   }
 
+  void complainOfMissing(const fs::path& shown, const std::string& what) {
+    violations.push_back(shown.generic_string() + ": " + what + " is missing in ARCHITECTURE.md");
+  }
+
   std::vector<std::string> violations;
 
  private:
-  void checkArrow(const std::string& module, const std::string& place, const std::string& line) {
-    static const std::regex include(R"(^\s*#\s*include\s*[<"](fascia/(\w+)/[^>"]+))");
+  bool hasFolders(const std::string& module) const {
+    const auto next = arrows_.upper_bound(module + "/");
+    return next != arrows_.end() && next->first.starts_with(module + "/");
+  }
+
+  void checkArrow(const fs::path& from, const std::string& place, const std::string& line) {
+    static const std::regex include(R"(^\s*#\s*include\s*[<"](fascia/(\w+/[^>"]+)))");
     std::smatch match;
-    if (std::regex_search(line, match, include) && !arrows_.at(module).contains(match[2].str()))
-      violations.push_back(place + "includes <" + match[1].str() + ">, but " + module +
-                           " may not use " + match[2].str());
+    if (!std::regex_search(line, match, include)) return;
+    const fs::path to = match[2].str();
+    const std::string module = moduleOf(from);
+    if (!arrows_.at(module).contains(moduleOf(to))) complain(place, match[1], module, moduleOf(to));
+    // The files of a module that are in no folder may use all of its folders.
+    const std::string folder = folderOf(from);
+    if (module != moduleOf(to) || folder == module || !arrows_.contains(folder)) return;
+    if (!arrows_.at(folder).contains(folderOf(to))) complain(place, match[1], folder, folderOf(to));
+  }
+
+  void complain(const std::string& place, const std::string& include, const std::string& from,
+                const std::string& to) {
+    violations.push_back(place + "includes <" + include + ">, but " + from + " may not use " + to);
   }
 
   const Arrows& arrows_;
@@ -76,12 +108,13 @@ class Checker {
 }  // namespace
 
 Arrows readArrows(const fs::path& architecture) {
-  static const std::regex row(R"(^\| (\w+) \|[^|]*\| ([\w, –]+) \|$)");
-  static const std::regex name(R"(\w+)");
+  static const std::regex row(R"(^\| ([\w/]+) \|[^|]*\| ([\w/, –]+) \|$)");
+  static const std::regex name(R"([\w/]+)");
   Arrows arrows;
   for (const std::string& line : readLines(architecture)) {
     std::smatch match;
-    if (!std::regex_match(line, match, row) || match[1] == "module") continue;
+    if (!std::regex_match(line, match, row) || match[1] == "module" || match[1] == "folder")
+      continue;
     std::set<std::string> allowed{match[1].str()};
     const std::string uses = match[2].str();
     for (std::sregex_iterator it(uses.begin(), uses.end(), name), end; it != end; ++it)
@@ -98,12 +131,10 @@ std::vector<std::string> findViolations(const fs::path& root, const Arrows& arro
     const std::string extension = entry.path().extension().string();
     if (extension != ".h" && extension != ".cpp") continue;
     const fs::path shown = fs::relative(entry.path(), root);
-    const std::string module = shown.begin()->string();
-    if (arrows.contains(module))
-      checker.check(module, shown, entry.path());
+    if (arrows.contains(moduleOf(shown)))
+      checker.check(shown, entry.path());
     else
-      checker.violations.push_back(shown.generic_string() + ": module " + module +
-                                   " is missing in ARCHITECTURE.md");
+      checker.complainOfMissing(shown, "module " + moduleOf(shown));
   }
   std::sort(checker.violations.begin(), checker.violations.end());
   return checker.violations;

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include <fascia/base/parallel.h>
-#include <fascia/io/character_file.h>
-#include <fascia/io/scene_file.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/io/documents/scene_file.h>
 #include <fascia/math/ode/integrators.h>
 
 #include "small_character.h"

@@ -3,7 +3,7 @@
 
 #include <fascia/character/character.h>
 #include <fascia/fitting/fit_flesh.h>
-#include <fascia/io/rig_import.h>
+#include <fascia/io/rig_import/rig_import.h>
 
 #include "support/assets.h"
 

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <thread>
 
-#include <fascia/io/cache.h>
+#include <fascia/io/cache/cache.h>
 #include <nlohmann/json.hpp>
 
 #include "program.h"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include <fascia/io/image.h>
+#include <fascia/io/picture/image.h>
 #include <nlohmann/json.hpp>
 
 #include "program.h"

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <thread>
 
-#include <fascia/io/image.h>
+#include <fascia/io/picture/image.h>
 #include <nlohmann/json.hpp>
 
 #include "program.h"

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include <fascia/io/cache.h>
+#include <fascia/io/cache/cache.h>
 #include <nlohmann/json.hpp>
 
 #include "program.h"

@@ -4,10 +4,10 @@
 #include <csignal>
 #include <thread>
 
-#include <fascia/io/cache.h>
-#include <fascia/io/mdd.h>
-#include <fascia/io/pc2.h>
-#include <fascia/io/scene_cache.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/mdd.h>
+#include <fascia/io/cache/pc2.h>
+#include <fascia/io/cache/scene_cache.h>
 #include <nlohmann/json.hpp>
 
 #include "program.h"

@@ -5,12 +5,12 @@
 #include <fstream>
 
 #include <fascia/base/error.h>
-#include <fascia/io/assimp_import.h>
-#include <fascia/io/child_process.h>
-#include <fascia/io/image.h>
-#include <fascia/io/makehuman_import.h>
-#include <fascia/io/rig_import.h>
-#include <fascia/io/rig_to_gltf.h>
+#include <fascia/io/file/child_process.h>
+#include <fascia/io/picture/image.h>
+#include <fascia/io/rig_import/assimp/assimp_import.h>
+#include <fascia/io/rig_import/makehuman/makehuman_import.h>
+#include <fascia/io/rig_import/rig_import.h>
+#include <fascia/io/rig_import/rig_to_gltf.h>
 
 #include "programs.h"
 #include "rig_checks.h"

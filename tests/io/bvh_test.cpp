@@ -6,9 +6,9 @@
 #include <zlib.h>
 
 #include <fascia/base/error.h>
-#include <fascia/io/bvh.h>
-#include <fascia/io/gzip.h>
-#include <fascia/io/joint_map_file.h>
+#include <fascia/io/file/gzip.h>
+#include <fascia/io/motion/bvh.h>
+#include <fascia/io/motion/joint_map_file.h>
 #include <fascia/rig/retarget.h>
 
 #include "support/assets.h"

@@ -1,11 +1,11 @@
-#include <fascia/io/plain_codecs.h>
+#include <fascia/io/documents/plain_codecs.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include <fascia/io/file.h>
+#include <fascia/io/file/file.h>
 
 #include "sample.h"
 #include "support/replaced.h"

@@ -5,13 +5,13 @@
 
 #include <unistd.h>
 
-#include <fascia/io/cache.h>
-#include <fascia/io/child_process.h>
-#include <fascia/io/file.h>
-#include <fascia/io/pc2.h>
-#include <fascia/io/stats_writer.h>
-#include <fascia/io/texture.h>
-#include <fascia/io/video_writer.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/pc2.h>
+#include <fascia/io/documents/stats_writer.h>
+#include <fascia/io/file/child_process.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/picture/texture.h>
+#include <fascia/io/picture/video_writer.h>
 
 #include "sample.h"
 

@@ -1,4 +1,4 @@
-#include <fascia/io/gltf_document.h>
+#include <fascia/io/gltf/gltf_document.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
 
-#include <fascia/io/file.h>
-#include <fascia/io/rig_gltf.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/rig_import/gltf/rig_gltf.h>
 
 #include "gltf_sample.h"
 #include "sample.h"

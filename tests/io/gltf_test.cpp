@@ -7,10 +7,10 @@
 #include <tiny_gltf.h>
 
 #include <fascia/geometry/welded_normals.h>
-#include <fascia/io/child_process.h>
-#include <fascia/io/file.h>
-#include <fascia/io/gltf_writer.h>
-#include <fascia/io/keep_frames.h>
+#include <fascia/io/file/child_process.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/glb_export/gltf_writer.h>
+#include <fascia/io/glb_export/keep_frames.h>
 
 #include "programs.h"
 #include "sample.h"

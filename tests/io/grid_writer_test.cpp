@@ -1,12 +1,12 @@
-#include <fascia/io/grid_writer.h>
+#include <fascia/io/glb_export/grid_writer.h>
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <optional>
 
-#include <fascia/io/child_process.h>
-#include <fascia/io/grid_rig.h>
+#include <fascia/io/file/child_process.h>
+#include <fascia/io/glb_export/grid_rig.h>
 
 #include "played_gltf.h"
 #include "sample.h"

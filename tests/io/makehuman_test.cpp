@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include <fascia/base/error.h>
-#include <fascia/io/bvh.h>
-#include <fascia/io/makehuman_import.h>
-#include <fascia/io/makehuman_mesh.h>
+#include <fascia/io/motion/bvh.h>
+#include <fascia/io/rig_import/makehuman/makehuman_import.h>
+#include <fascia/io/rig_import/makehuman/makehuman_mesh.h>
 #include <fascia/rig/retarget.h>
 
 #include "support/assets.h"

@@ -1,10 +1,10 @@
-#include <fascia/io/mdd.h>
+#include <fascia/io/cache/mdd.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include <fascia/io/file.h>
+#include <fascia/io/file/file.h>
 
 #include "sample.h"
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <random>
 
-#include <fascia/io/cache.h>
-#include <fascia/io/file.h>
-#include <fascia/io/pc2.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/pc2.h>
+#include <fascia/io/file/file.h>
 #include <fascia/world/performance.h>
 
 #include "sample.h"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <fascia/io/child_process.h>
+#include <fascia/io/file/child_process.h>
 
 namespace fascia::test {
 

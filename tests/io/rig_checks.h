@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include <fascia/io/rig_gltf.h>
+#include <fascia/io/rig_import/gltf/rig_gltf.h>
 
 #include "gltf_sample.h"
 

@@ -1,4 +1,4 @@
-#include <fascia/io/rig_import.h>
+#include <fascia/io/rig_import/rig_import.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include <random>
 
 #include <fascia/base/error.h>
-#include <fascia/io/rig_stream.h>
+#include <fascia/io/cache/rig_stream.h>
 
 namespace fascia {
 namespace {

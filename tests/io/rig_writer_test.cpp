@@ -1,4 +1,4 @@
-#include <fascia/io/rig_writer.h>
+#include <fascia/io/rig_export/rig_writer.h>
 
 #include <gtest/gtest.h>
 
@@ -6,12 +6,12 @@
 #include <functional>
 #include <optional>
 
-#include <fascia/io/child_process.h>
-#include <fascia/io/file.h>
-#include <fascia/io/mdd.h>
-#include <fascia/io/pc2.h>
-#include <fascia/io/rig_import.h>
-#include <fascia/io/rig_writer_player.h>
+#include <fascia/io/cache/mdd.h>
+#include <fascia/io/cache/pc2.h>
+#include <fascia/io/file/child_process.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/rig_export/rig_writer_player.h>
+#include <fascia/io/rig_import/rig_import.h>
 #include <fascia/rig/linear_blend.h>
 
 #include "gltf_sample.h"

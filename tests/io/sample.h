@@ -4,7 +4,7 @@
 #include <string>
 
 #include <fascia/character/recording.h>
-#include <fascia/io/character_file.h>
+#include <fascia/io/documents/character_file.h>
 
 namespace fascia::sample {
 

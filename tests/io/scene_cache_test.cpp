@@ -4,9 +4,9 @@
 #include <cstring>
 #include <limits>
 
-#include <fascia/io/cache.h>
-#include <fascia/io/file.h>
-#include <fascia/io/scene_cache.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/scene_cache.h>
+#include <fascia/io/file/file.h>
 
 #include "character/small_character.h"
 #include "sample.h"

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <fascia/io/character_file.h>
-#include <fascia/io/file.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/io/file/file.h>
 
 #include "sample.h"
 #include "scene_sample.h"

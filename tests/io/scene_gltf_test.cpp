@@ -6,10 +6,10 @@
 // Declarations only: the functions are in the library.
 #include <tiny_gltf.h>
 
-#include <fascia/body/carried_mesh.h>
-#include <fascia/io/child_process.h>
-#include <fascia/io/file.h>
-#include <fascia/io/scene_gltf.h>
+#include <fascia/deformable/body/carried_mesh.h>
+#include <fascia/io/file/child_process.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/glb_export/scene_gltf.h>
 
 #include "character/small_character.h"
 #include "programs.h"

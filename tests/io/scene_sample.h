@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <fascia/io/scene_file.h>
+#include <fascia/io/documents/scene_file.h>
 
 #include "gltf_sample.h"
 

@@ -9,8 +9,8 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
-#include <fascia/io/file.h>
-#include <fascia/io/scene_file.h>
+#include <fascia/io/documents/scene_file.h>
+#include <fascia/io/file/file.h>
 
 #include "sample.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fascia/math/finite_difference.h>
-#include <fascia/skin/bending.h>
+#include <fascia/skin/grid/bending.h>
 
 #include "grids.h"
 

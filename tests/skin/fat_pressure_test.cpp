@@ -1,4 +1,4 @@
-#include <fascia/skin/fat_pressure.h>
+#include <fascia/skin/contact/fat_pressure.h>
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <fascia/skin/flesh_contact.h>
+#include <fascia/skin/contact/flesh_contact.h>
 
 #include "test_fields.h"
 

@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 
 #include <fascia/base/random.h>
-#include <fascia/skin/elastic_grid.h>
-#include <fascia/skin/grid_kernels.h>
+#include <fascia/skin/grid/elastic_grid.h>
+#include <fascia/skin/grid/grid_kernels.h>
 
 namespace fascia::test {
 

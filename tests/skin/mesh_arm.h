@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include <fascia/skin/rigged_skin.h>
+#include <fascia/skin/mesh/rigged_skin.h>
 
 namespace fascia::test {
 

@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 
 #include <fascia/base/random.h>
-#include <fascia/skin/mesh_kernels.h>
-#include <fascia/skin/triangle_membrane.h>
+#include <fascia/skin/mesh/mesh_kernels.h>
+#include <fascia/skin/mesh/triangle_membrane.h>
 
 namespace fascia::test {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <fascia/skin/leapfrog.h>
+#include <fascia/skin/grid/leapfrog.h>
 
 #include "grids.h"
 

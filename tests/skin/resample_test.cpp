@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <fascia/skin/prolongation.h>
-#include <fascia/skin/resample.h>
+#include <fascia/skin/grid/prolongation.h>
+#include <fascia/skin/grid/resample.h>
 
 #include "grids.h"
 

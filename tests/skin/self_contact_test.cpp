@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <fascia/skin/self_contact.h>
+#include <fascia/skin/self_contact/self_contact.h>
 
 #include <cmath>
 #include <functional>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fascia/geometry/triangle_hierarchy.h>
-#include <fascia/skin/wrap.h>
+#include <fascia/skin/grid/wrap.h>
 
 #include "test_fields.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fascia/base/error.h>
-#include <fascia/body/body_surface.h>
+#include <fascia/deformable/surfaces/body_surface.h>
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/world/inflate.h>
 #include <fascia/world/outline_curve.h>

@@ -3,7 +3,7 @@
 #include <fascia/base/error.h>
 #include <fascia/world/script.h>
 
-#include "body/puppets.h"
+#include "deformable/puppets.h"
 
 namespace fascia::test {
 

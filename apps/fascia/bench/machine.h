@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include <fascia/io/json.h>
+#include <fascia/io/json/json.h>
 
 namespace fascia {
 

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/parallel.h>
-#include <fascia/io/scene_file.h>
+#include <fascia/io/documents/scene_file.h>
 #include <fascia/world/performance.h>
 
 #include "bench/benches.h"

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <fascia/base/parallel.h>
-#include <fascia/io/image.h>
-#include <fascia/io/video_writer.h>
+#include <fascia/io/picture/image.h>
+#include <fascia/io/picture/video_writer.h>
 
 #include "compare/shooting.h"
 #include "compare/subject.h"

@@ -2,11 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <fascia/io/cache.h>
-#include <fascia/io/character_file.h>
-#include <fascia/io/rig_import.h>
-#include <fascia/io/scene_cache.h>
-#include <fascia/io/scene_file.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/cache/scene_cache.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/io/documents/scene_file.h>
+#include <fascia/io/rig_import/rig_import.h>
 
 #include "film_parts.h"
 #include "flesh.h"

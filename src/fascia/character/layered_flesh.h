@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <fascia/body/body_field.h>
+#include <fascia/deformable/body/body_field.h>
 #include <fascia/flesh/flesh.h>
 
 namespace fascia {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include <fascia/body/body_stepper.h>
 #include <fascia/character/soft_flesh.h>
+#include <fascia/deformable/solve/body_stepper.h>
 
 namespace fascia {
 

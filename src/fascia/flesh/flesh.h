@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include <fascia/body/body_def.h>
 #include <fascia/field/field.h>
 #include <fascia/field/solid.h>
+#include <fascia/material/body_def.h>
 #include <fascia/skeleton/skeleton.h>
 
 namespace fascia {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include <fascia/body/carried_mesh.h>
+#include <fascia/deformable/body/carried_mesh.h>
 #include <fascia/render/character_scene.h>
 #include <fascia/world/stage.h>
 

@@ -2,8 +2,8 @@
 
 #include <fascia/math/ode/adaptive_stepper.h>
 #include <fascia/math/ode/system.h>
+#include <fascia/skin/contact/skin_contact.h>
 #include <fascia/skin/skin.h>
-#include <fascia/skin/skin_contact.h>
 
 namespace fascia {
 

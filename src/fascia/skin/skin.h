@@ -13,15 +13,15 @@
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/pose/jiggle_state.h>
 #include <fascia/rig/rigged_model.h>
-#include <fascia/skin/fat_pressure.h>
-#include <fascia/skin/grid_topology.h>
-#include <fascia/skin/leapfrog.h>
-#include <fascia/skin/point_kernels.h>
-#include <fascia/skin/point_model.h>
-#include <fascia/skin/quantities.h>
-#include <fascia/skin/self_contact.h>
+#include <fascia/skin/contact/fat_pressure.h>
+#include <fascia/skin/grid/grid_topology.h>
+#include <fascia/skin/grid/leapfrog.h>
+#include <fascia/skin/point/point_kernels.h>
+#include <fascia/skin/point/point_model.h>
+#include <fascia/skin/point/quantities.h>
+#include <fascia/skin/point/tissue.h>
+#include <fascia/skin/self_contact/self_contact.h>
 #include <fascia/skin/skin_def.h>
-#include <fascia/skin/tissue.h>
 
 namespace fascia {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include <fascia/skin/flesh_contact.h>
-#include <fascia/skin/resample.h>
-#include <fascia/skin/rigged_skin.h>
+#include <fascia/skin/contact/flesh_contact.h>
+#include <fascia/skin/grid/resample.h>
+#include <fascia/skin/mesh/rigged_skin.h>
 #include <fascia/skin/skin.h>
 
 namespace fascia {

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include <fascia/skin/mesh/posed_skin_run.h>
 #include <fascia/skin/ode_skin.h>
-#include <fascia/skin/posed_skin_run.h>
 
 namespace fascia {
 namespace {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include <fascia/skin/prolongation.h>
-#include <fascia/skin/rigged_skin.h>
+#include <fascia/skin/contact/skin_contact.h>
+#include <fascia/skin/grid/prolongation.h>
+#include <fascia/skin/mesh/rigged_skin.h>
 #include <fascia/skin/skin.h>
-#include <fascia/skin/skin_contact.h>
 
 namespace fascia {
 

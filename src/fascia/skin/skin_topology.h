@@ -8,7 +8,7 @@
 
 #include <fascia/base/aligned.h>
 #include <fascia/geometry/triangle_mesh.h>
-#include <fascia/skin/step_inputs.h>
+#include <fascia/skin/point/step_inputs.h>
 
 namespace fascia {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <fascia/body/body_surface.h>
+#include <fascia/deformable/surfaces/body_surface.h>
 
 namespace fascia {
 

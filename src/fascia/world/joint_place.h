@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include <fascia/body/constraint.h>
+#include <fascia/deformable/constraint/constraint.h>
 #include <fascia/world/scene_def.h>
 
 namespace fascia {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <fascia/base/hash.h>
-#include <fascia/body/body_contact.h>
-#include <fascia/body/body_stepper.h>
+#include <fascia/deformable/contact/body_contact.h>
+#include <fascia/deformable/solve/body_stepper.h>
 #include <fascia/world/joint_place.h>
 #include <fascia/world/placed_field.h>
 #include <fascia/world/stage_surroundings.h>

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <fascia/body/body_stepper.h>
-#include <fascia/body/body_system.h>
-#include <fascia/body/puppet.h>
+#include <fascia/deformable/puppet/puppet.h>
+#include <fascia/deformable/solve/body_stepper.h>
+#include <fascia/deformable/solve/body_system.h>
 #include <fascia/world/script.h>
 #include <fascia/world/stage.h>
 

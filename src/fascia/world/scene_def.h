@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <fascia/body/body_def.h>
 #include <fascia/character/character.h>
 #include <fascia/geometry/triangle_mesh.h>
+#include <fascia/material/body_def.h>
 
 namespace fascia {
 

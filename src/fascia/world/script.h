@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include <fascia/body/puppet.h>
+#include <fascia/deformable/puppet/puppet.h>
 
 namespace fascia {
 

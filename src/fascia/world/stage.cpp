@@ -8,7 +8,7 @@
 
 #include <fascia/base/random.h>
 #include <fascia/base/suggest.h>
-#include <fascia/body/matter.h>
+#include <fascia/deformable/matter/matter.h>
 #include <fascia/skeleton/euler.h>
 #include <fascia/world/inflate.h>
 #include <fascia/world/outline_curve.h>

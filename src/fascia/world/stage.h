@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include <fascia/body/body_model.h>
-#include <fascia/body/body_surface.h>
+#include <fascia/deformable/body/body_model.h>
+#include <fascia/deformable/surfaces/body_surface.h>
 #include <fascia/world/scene_def.h>
 
 namespace fascia {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <fascia/body/body_stepper.h>
 #include <fascia/character/recording.h>
+#include <fascia/deformable/solve/body_stepper.h>
 #include <fascia/world/performance.h>
 
 namespace fascia {

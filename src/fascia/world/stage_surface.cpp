@@ -1,6 +1,6 @@
 #include <fascia/world/stage_surface.h>
 
-#include <fascia/body/carried_mesh.h>
+#include <fascia/deformable/body/carried_mesh.h>
 
 namespace fascia {
 namespace {

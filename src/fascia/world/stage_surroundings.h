@@ -1,6 +1,6 @@
 #pragma once
 
-#include <fascia/body/body_field.h>
+#include <fascia/deformable/body/body_field.h>
 #include <fascia/field/field_list.h>
 #include <fascia/world/placed_field.h>
 #include <fascia/world/stage.h>

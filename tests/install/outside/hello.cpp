@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include <fascia/character/recording.h>
-#include <fascia/io/gltf_writer.h>
+#include <fascia/io/glb_export/gltf_writer.h>
 #include <fascia/render/scene.h>
 
 namespace {

@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include <fascia/base/suggest.h>
-#include <fascia/io/character_file.h>
-#include <fascia/io/rig_file.h>
-#include <fascia/io/rig_import.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/io/rig_import/rig_file.h>
+#include <fascia/io/rig_import/rig_import.h>
 
 #include "motion_file.h"
 #include "outputs.h"

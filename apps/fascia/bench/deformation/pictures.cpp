@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <fascia/geometry/visibility.h>
-#include <fascia/io/image.h>
+#include <fascia/io/picture/image.h>
 
 namespace fascia {
 namespace {

@@ -9,8 +9,8 @@
 #include <fascia/field/field.h>
 #include <fascia/field/solid.h>
 #include <fascia/math/points.h>
-#include <fascia/skin/flesh_contact.h>
-#include <fascia/skin/leapfrog.h>
+#include <fascia/skin/contact/flesh_contact.h>
+#include <fascia/skin/grid/leapfrog.h>
 
 namespace fascia {
 namespace {

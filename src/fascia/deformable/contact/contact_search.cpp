@@ -1,0 +1,290 @@
+#include <fascia/deformable/contact/contact_search.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fascia/deformable/body/for_each_body.h>
+#include <fascia/geometry/box_tree.h>
+#include <fascia/math/points.h>
+
+namespace fascia {
+namespace {
+
+constexpr std::size_t kSearchesPerTask = 8;
+// Ways shorter than so many margins are not traced: nothing gets lost in them.
+constexpr double kShortWay = 4;
+constexpr int kMaxTraceSteps = 16;
+// Distances of deformed solids are of first order: less than the whole is safe.
+constexpr double kTraceShare = 0.8;
+// Who begins inside of something is let out by so much of its size per second, not shot.
+constexpr double kRecovery_per_s = 1;
+// Of m_eff/h², see BodyContacts. Larger: smaller gaps and more iterations between bodies.
+constexpr double kStiffness = 30;
+constexpr double kLoadStiffness = 0.25;
+// In two dimensions a surface that faces the plane less than this cannot push within it.
+constexpr double kFlat = 0.2;
+
+Vec3 rounded(const Vec3& v) {
+  return v.cast<float>().cast<double>();
+}
+
+Box inflated(const Box& box, double by_m) {
+  return {box.low.array() - by_m, box.high.array() + by_m};
+}
+
+// The fastest corner of a solid, m/s.
+double speedOf(const Field& field, SolidId solid) {
+  const Transform frame = field.frame(solid);
+  std::array<float, Field::kOutline> x, y, z, vx, vy, vz;
+  for (std::size_t c = 0; c < Field::kOutline; ++c) {
+    const Eigen::Vector3f p = frame.point(field.outline(solid)[c]).cast<float>();
+    x[c] = p.x(), y[c] = p.y(), z[c] = p.z();
+  }
+  const Vectors velocity{vx.data(), vy.data(), vz.data(), Field::kOutline};
+  field.velocity(solid, {x.data(), y.data(), z.data(), Field::kOutline}, velocity);
+  double fastest = 0;
+  for (std::size_t c = 0; c < Field::kOutline; ++c)
+    fastest = std::max(fastest, pointAt(velocity, c).norm());
+  return fastest;
+}
+
+}  // namespace
+
+void ContactSearch::resize() {
+  work_.resize(contacts_.bodies_.size());
+  for (std::size_t b = 0; b < work_.size(); ++b) {
+    const auto& points = contacts_.bodies_[b].points;
+    const std::size_t count = points ? points->size() : 0;
+    Work& work = work_[b];
+    work.start.resize(3, static_cast<Eigen::Index>(count));
+    work.way.resize(3, static_cast<Eigen::Index>(count));
+    for (VectorArray* array : {&work.place, &work.normal, &work.endNormal, &work.velocity})
+      array->resize(count);
+    work.distance_m.resize(count), work.endDistance_m.resize(count);
+    work.picked.reserve(count), work.found.reserve(count);
+  }
+  order_.clear();
+  for (std::size_t b = 0; b < work_.size(); ++b)
+    if (contacts_.bodies_[b].points) order_.push_back(b);
+}
+
+void ContactSearch::find(const BodyContacts::Step& step, const BodyField& bodies, ContactSet& set) {
+  step_ = step;
+  forEachBody(work_.size(), kSearchesPerTask, [&](BodyId body) { movePoints(body); });
+  findNearBodies();
+  gatherObstacles();
+  forEachBody(work_.size(), kSearchesPerTask, [&](BodyId body) { findContacts(body, bodies); });
+  set.clear();
+  for (Work& work : work_) {
+    for (Found& found : work.found) {
+      if (found.contact.b.count > 0)
+        found.contact.b.weights = work.weights.data() + found.firstWeight;
+      set.add(found.contact);
+    }
+  }
+  set.finish();
+}
+
+double ContactSearch::marginOf(BodyId body, double otherSize_m) const {
+  constexpr double kMarginShare = 0.01;
+  if (contacts_.settings_.margin_m > 0) return contacts_.settings_.margin_m;
+  return kMarginShare * std::min(contacts_.model_.shape(body).size_m(), otherSize_m);
+}
+
+// Where the points are at the beginning of the step, and their first guess of a way.
+void ContactSearch::movePoints(BodyId body) {
+  Work& work = work_[body.index()];
+  work.found.clear(), work.weights.clear(), work.near.clear();
+  work.box = {};
+  if (work.start.cols() == 0) return;
+  const BodyModel& model = contacts_.model_;
+  const int d = model.dimension(), k = model.shape(body).shapeCount();
+  const Eigen::MatrixXd& weights = contacts_.bodies_[body.index()].points->weights;
+  const auto moved = [&](std::span<const double> all, Eigen::Matrix3Xd& out) {
+    out.setZero();
+    const double* x = model.part(body, all).data();
+    for (Eigen::Index i = 0; i < out.cols(); ++i)
+      for (int j = 0; j < k; ++j)
+        for (int row = 0; row < d; ++row) out(row, i) += x[d * j + row] * weights(j, i);
+  };
+  moved(step_.q, work.start);
+  moved(step_.way, work.way);
+  for (Eigen::Index i = 0; i < work.start.cols(); ++i) {
+    work.box.add(Vec3(work.start.col(i)));
+    work.box.add(Vec3(work.start.col(i) + work.way.col(i)));
+  }
+  work.box = inflated(work.box, marginOf(body, model.shape(body).size_m()));
+}
+
+// Boxes that meet, by sweeping along x.
+void ContactSearch::findNearBodies() {
+  if (!contacts_.settings_.bodies_collide) return;
+  const auto left = [&](std::size_t b) { return work_[b].box.low.x(); };
+  std::ranges::sort(order_, [&](std::size_t a, std::size_t b) {
+    return left(a) < left(b) || (left(a) == left(b) && a < b);
+  });
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    Work& a = work_[order_[i]];
+    for (std::size_t j = i + 1; j < order_.size(); ++j) {
+      Work& b = work_[order_[j]];
+      if (b.box.low.x() > a.box.high.x()) break;
+      if (!meets(a.box, b.box)) continue;
+      if (!contacts_.collides(BodyId(order_[i]), BodyId(order_[j]))) continue;
+      a.near.push_back(order_[j]);
+      b.near.push_back(order_[i]);
+    }
+  }
+}
+
+void ContactSearch::gatherObstacles() {
+  obstacles_.clear();
+  for (const BodyContacts::Obstacle& obstacle : contacts_.obstacles_) {
+    for (std::size_t s = 0; s < obstacle.field->solidCount(); ++s) {
+      const SolidId solid(s);
+      Target target{obstacle.field,    solid,    obstacle.field->bounds(solid),
+                    obstacle.friction, HUGE_VAL, {}};
+      if (target.bounds.empty()) continue;
+      target.bounds =
+          inflated(target.bounds, speedOf(*obstacle.field, solid) * (step_.h_s + step_.lead_s));
+      obstacles_.push_back(target);
+    }
+  }
+}
+
+void ContactSearch::findContacts(BodyId body, const BodyField& bodies) {
+  Work& work = work_[body.index()];
+  if (work.start.cols() == 0) return;
+  meetGround(body);
+  for (const Target& target : obstacles_)
+    if (meets(work.box, target.bounds)) meet(body, target);
+  for (const std::size_t other : work.near) {
+    const BodyContacts::Body& b = contacts_.bodies_[other];
+    meet(body, {&bodies, b.solid, work_[other].box, b.friction,
+                contacts_.model_.shape(BodyId(other)).size_m(), BodyId(other)});
+  }
+}
+
+void ContactSearch::meetGround(BodyId body) {
+  if (!contacts_.settings_.ground_m) return;
+  const Work& work = work_[body.index()];
+  const double ground_m = *contacts_.settings_.ground_m;
+  if (work.box.low.y() > ground_m + marginOf(body, HUGE_VAL)) return;
+  const Target target{nullptr, {}, {}, contacts_.settings_.friction, HUGE_VAL, {}};
+  for (int i = 0; i < work.start.cols(); ++i) {
+    const Vec3 start = work.start.col(i), way = work.way.col(i);
+    addContact(body, i, {start, start.y() - ground_m, Vec3::UnitY()}, start, way, Vec3::Zero(),
+               target);
+  }
+}
+
+bool ContactSearch::pick(Work& work, const Box& bounds) const {
+  work.picked.clear();
+  for (int i = 0; i < work.start.cols(); ++i) {
+    Box box;
+    box.add(Vec3(work.start.col(i)));
+    box.add(Vec3(work.start.col(i) + work.way.col(i)));
+    if (meets(box, bounds)) work.picked.push_back(i);
+  }
+  return !work.picked.empty();
+}
+
+// Seen from the target, a point's way begins where the target's matter would carry it.
+void ContactSearch::meet(BodyId body, const Target& target) {
+  Work& work = work_[body.index()];
+  const double margin_m = marginOf(body, target.size_m);
+  if (!pick(work, inflated(target.bounds, margin_m))) return;
+  const std::size_t count = work.picked.size();
+  for (std::size_t i = 0; i < count; ++i) setPoint(work.place, i, work.start.col(work.picked[i]));
+  const auto first = [&](VectorArray& array) { return view(array, 0, count); };
+  target.field->velocity(target.solid, first(work.place), first(work.velocity));
+  const auto start = [&](std::size_t i) {
+    return Vec3(work.start.col(work.picked[i]) +
+                shift_s(target) * pointAt(first(work.velocity), i));
+  };
+  const auto way = [&](std::size_t i) {
+    return Vec3(work.way.col(work.picked[i]) - step_.h_s * pointAt(first(work.velocity), i));
+  };
+  for (std::size_t i = 0; i < count; ++i) setPoint(work.place, i, start(i));
+  target.field->evaluate(target.solid, first(work.place), work.distance_m.data(),
+                         first(work.normal));
+  for (std::size_t i = 0; i < count; ++i) setPoint(work.place, i, start(i) + way(i));
+  target.field->evaluate(target.solid, first(work.place), work.endDistance_m.data(),
+                         first(work.endNormal));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Plane begin{rounded(start(i)), work.distance_m[i], pointAt(first(work.normal), i)};
+    const Plane end{rounded(start(i) + way(i)), work.endDistance_m[i],
+                    pointAt(first(work.endNormal), i)};
+    const double length_m = way(i).norm();
+    const bool covered = begin.distance_m + end.distance_m >= length_m && end.distance_m >= 0;
+    const bool isShort = length_m <= kShortWay * margin_m;
+    const Plane plane = covered || isShort ? end : trace(begin, end, target, margin_m);
+    const Vec3 drift = step_.h_s * pointAt(first(work.velocity), i);
+    addContact(body, work.picked[i], plane, start(i), way(i),
+               target.body.valid() ? Vec3(Vec3::Zero()) : drift, target);
+  }
+}
+
+ContactSearch::Plane ContactSearch::trace(const Plane& first, const Plane& last,
+                                          const Target& target, double margin_m) {
+  const Vec3 way = last.place_m - first.place_m;
+  const double length_m = way.norm();
+  Plane plane = first;
+  double passed_m = 0;
+  for (int step = 0; step < kMaxTraceSteps && plane.distance_m > margin_m; ++step) {
+    passed_m += kTraceShare * plane.distance_m;
+    if (passed_m >= length_m) return last;
+    const Eigen::Vector3f place = (first.place_m + passed_m / length_m * way).cast<float>();
+    float distance_m, nx, ny, nz;
+    target.field->evaluate(target.solid, {&place.x(), &place.y(), &place.z(), 1}, &distance_m,
+                           {&nx, &ny, &nz, 1});
+    plane = {place.cast<double>(), distance_m, Vec3(nx, ny, nz)};
+  }
+  return plane;
+}
+
+void ContactSearch::addContact(BodyId body, int point, Plane plane, const Vec3& start,
+                               const Vec3& way, const Vec3& drift_m, const Target& target) {
+  const BodyModel& model = contacts_.model_;
+  const double facing =
+      model.dimension() == 3 ? plane.normal.norm() : plane.normal.head<2>().norm();
+  if (facing < kFlat) return;
+  Contact contact;
+  contact.normal = plane.normal / facing;
+  if (model.dimension() == 2) contact.normal.z() = 0;
+  contact.drift_m = drift_m;
+  contact.gap_m = plane.distance_m / facing + contact.normal.dot(start - plane.place_m);
+  contact.energy.margin_m = marginOf(body, target.size_m);
+  const double end_m = contact.gap_m + contact.normal.dot(way);
+  // Beyond this nothing will come near that is not on its way already.
+  const double reach_m = 2 * contact.energy.margin_m + 0.25 * way.norm() +
+                         contacts_.gravity_m_per_s2_ * step_.h_s * step_.h_s;
+  if (!(std::min(contact.gap_m, end_m) < reach_m)) return;
+  const double size_m = std::min(model.shape(body).size_m(), target.size_m);
+  contact.gap_m -= std::min(0.0, contact.gap_m + kRecovery_per_s * size_m * step_.h_s);
+  const ContactPoints& points = *contacts_.bodies_[body.index()].points;
+  const int k = model.shape(body).shapeCount();
+  contact.a = {body, model.offset(body), points.weights.col(point).data(), k};
+  double mobility_per_kg = points.weights.col(point).squaredNorm();
+  Work& work = work_[body.index()];
+  const std::size_t firstWeight = work.weights.size();
+  if (target.body.valid()) {
+    const BodyShape& other = model.shape(target.body);
+    const Vec3 touched = plane.place_m - plane.distance_m * plane.normal;
+    work.weights.resize(firstWeight + static_cast<std::size_t>(other.shapeCount()));
+    Eigen::Map<Eigen::VectorXd> s(work.weights.data() + firstWeight, other.shapeCount());
+    other.pointWeights(target.field->materialFromWorld(target.solid, touched), s);
+    contact.b = {target.body, model.offset(target.body), nullptr, other.shapeCount()};
+    mobility_per_kg += s.squaredNorm();
+  }
+  contact.inertia_N_per_m = 1 / (mobility_per_kg * step_.h_s * step_.h_s);
+  contact.energy.stiffness_N_per_m =
+      std::max(kStiffness * contact.inertia_N_per_m, kLoadStiffness * contacts_.heaviest_kg_ *
+                                                         contacts_.gravity_m_per_s2_ /
+                                                         contact.energy.margin_m);
+  contact.friction = std::sqrt(contacts_.bodies_[body.index()].friction * target.friction);
+  contact.smoothing_m = contacts_.settings_.creep_per_s * size_m * step_.h_s;
+  work.found.push_back({contact, firstWeight});
+}
+
+}  // namespace fascia

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <vector>
+
+#include <fascia/deformable/contact/body_contact.h>
+
+namespace fascia {
+
+// Finds the contacts of a step, as planes. A point that moves little is measured at the end of its
+// first guess of a way. One that could pass through something is led along its way by steps no
+// longer than its distance (sphere tracing, Hart 1996) and meets the plane where it comes near:
+// so nothing is too thin or too fast, as far as distances are not overestimated.
+class ContactSearch {
+ public:
+  explicit ContactSearch(const BodyContacts& contacts) : contacts_(contacts) {}
+
+  void resize();  // after surfaces have changed
+  void find(const BodyContacts::Step& step, const BodyField& bodies, ContactSet& set);
+
+ private:
+  // What a body's points are held against.
+  struct Target {
+    const Field* field;
+    SolidId solid;
+    Box bounds;  // of its whole way
+    double friction, size_m;
+    BodyId body;  // invalid: an obstacle
+  };
+  struct Plane {
+    Vec3 place_m;  // where the distance is from
+    double distance_m;
+    Vec3 normal;
+  };
+  struct Found {
+    Contact contact;
+    std::size_t firstWeight = 0;  // of the touched body's point
+  };
+  // Of one body; its points are columns.
+  struct Work {
+    Eigen::Matrix3Xd start, way;
+    Box box;  // of the whole ways, with the margin
+    std::vector<Found> found;
+    std::vector<double> weights;
+    std::vector<std::size_t> near;  // bodies
+    std::vector<int> picked;        // points that may meet the target at hand
+    VectorArray place, normal, endNormal, velocity;
+    FloatArray distance_m, endDistance_m;
+  };
+
+  void movePoints(BodyId body);
+  void findNearBodies();
+  void gatherObstacles();
+  void findContacts(BodyId body, const BodyField& bodies);
+  void meetGround(BodyId body);
+  void meet(BodyId body, const Target& target);
+  bool pick(Work& work, const Box& bounds) const;
+  static Plane trace(const Plane& first, const Plane& last, const Target& target, double margin_m);
+  void addContact(BodyId body, int point, Plane plane, const Vec3& start, const Vec3& way,
+                  const Vec3& drift_m, const Target& target);
+  double marginOf(BodyId body, double otherSize_m) const;
+  // What the obstacle's or body's velocity is multiplied with to see the step from its frame.
+  double shift_s(const Target& target) const {
+    return target.body.valid() ? 0 : step_.h_s + step_.lead_s;
+  }
+
+  const BodyContacts& contacts_;
+  BodyContacts::Step step_{};
+  std::vector<Work> work_;
+  std::vector<Target> obstacles_;
+  std::vector<std::size_t> order_;  // bodies, along x
+};
+
+}  // namespace fascia

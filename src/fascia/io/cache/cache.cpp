@@ -1,0 +1,214 @@
+#include <fascia/io/cache/cache.h>
+
+#include <cmath>
+#include <functional>
+
+#include <fascia/io/cache/rig_stream.h>
+#include <fascia/io/documents/character_file.h>
+#include <fascia/io/file/byte_stream.h>
+#include <fascia/io/file/file.h>
+
+namespace fascia {
+namespace {
+
+// Layout, little-endian: magic, u32 version; texts (u64 length, bytes): character file, texture,
+// motion; the rig if the character has one (version 2 and later); how many numbers the soft solids'
+// shapes are (version 3); rate, loop; the mesh; per frame time, posture, shapes, positions as
+// float32; stats.
+constexpr std::string_view kCacheMagic("FCACHE\x1a\n", 8);
+constexpr std::uint32_t kPlainVersion = 1, kRigVersion = 2, kSoftVersion = 3;
+constexpr std::size_t kMaxCacheBytes = std::size_t{8} << 30;
+
+template <class Vector>
+void checkFinite(const ByteReader& in, const std::vector<Vector>& values) {
+  for (const Vector& v : values) {
+    if (!v.allFinite()) in.fail("holds a value that is not a finite number");
+  }
+}
+
+void checkFinite(const ByteReader& in, double value) {
+  if (!std::isfinite(value)) in.fail("holds a value that is not a finite number");
+}
+
+void writeMesh(ByteWriter& out, const TriangleMesh& mesh) {
+  out.list(mesh.positions);
+  out.list(mesh.normals);
+  out.list(mesh.uvs);
+  out.list(mesh.triangles);
+}
+
+TriangleMesh readMesh(ByteReader& in) {
+  TriangleMesh mesh;
+  in.list(mesh.positions);
+  in.list(mesh.normals);
+  in.list(mesh.uvs);
+  in.list(mesh.triangles);
+  const std::size_t count = mesh.positions.size();
+  const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
+  if (!fits(mesh.normals.size()) || !fits(mesh.uvs.size())) in.fail("has a mesh of unequal parts");
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      if (v >= count) in.fail("has a triangle that points nowhere");
+    }
+  }
+  checkFinite(in, mesh.positions);
+  checkFinite(in, mesh.normals);
+  checkFinite(in, mesh.uvs);
+  return mesh;
+}
+
+template <class Stats, class Visit>
+void eachSkinStat(Stats& s, const Visit& visit) {
+  visit(s.steps), visit(s.rejected_steps), visit(s.step_min_s), visit(s.step_max_s);
+  visit(s.forces_s), visit(s.constraints_s), visit(s.other_s), visit(s.max_penetration_m);
+  visit(s.max_edge_stretch), visit(s.repaired_points);
+}
+
+std::size_t valueCount(const CharacterDef& def) {
+  std::size_t count = 0;
+  for (const JointDef& joint : def.skeleton.joints) count += joint.dofs.size();
+  return count;
+}
+
+std::size_t shapeSize(const Recording& recording) {
+  return recording.frames.empty() ? 0 : recording.frames.front().soft_shapes.size();
+}
+
+// Older programs still read what they can.
+std::uint32_t versionOf(const CharacterDef& def, const Recording& recording) {
+  if (shapeSize(recording) > 0) return kSoftVersion;
+  return def.rig ? kRigVersion : kPlainVersion;
+}
+
+Recording::Frame readFrame(ByteReader& in, std::size_t postureSize, std::size_t shapes,
+                           std::size_t vertices) {
+  Recording::Frame frame;
+  frame.time_s = in.value<double>();
+  checkFinite(in, frame.time_s);
+  in.array(frame.posture, postureSize);
+  in.array(frame.soft_shapes, shapes);
+  for (const auto* values : {&frame.posture, &frame.soft_shapes})
+    for (const double value : *values) checkFinite(in, value);
+  if (in.value<std::uint8_t>() != 0) in.array(frame.skin_m, vertices);
+  checkFinite(in, frame.skin_m);
+  return frame;
+}
+
+}  // namespace
+
+bool isCache(std::string_view bytes) {
+  return bytes.starts_with(kCacheMagic);
+}
+
+namespace {
+
+// Everything in its order, piece by piece.
+void putCache(const CharacterDef& def, const Recording& recording, const Texture* texture,
+              const std::function<void(std::string_view)>& put) {
+  const std::size_t postureSize = valueCount(def);
+  if (def.rig && !def.rig->model) throw Error("the character's rig was not read from its file");
+  ByteWriter head;
+  head.bytes = kCacheMagic;
+  const std::size_t shapes = shapeSize(recording);
+  head.value(versionOf(def, recording));
+  head.text(characterText(def));
+  head.text(texture ? texture->bytes : loadTexture(def).bytes);
+  head.text(recording.motion);
+  if (def.rig) writeRig(*def.rig->model, recording.motion, head);
+  if (shapes > 0) head.value(static_cast<std::uint64_t>(shapes));
+  head.value(recording.frame_rate_hz);
+  head.value(static_cast<std::uint8_t>(recording.loop));
+  writeMesh(head, recording.skin);
+  head.value(static_cast<std::uint64_t>(recording.frames.size()));
+  put(head.bytes);
+  for (const Recording::Frame& frame : recording.frames) {
+    const bool skin = !frame.skin_m.empty();
+    if (frame.posture.size() != postureSize || frame.soft_shapes.size() != shapes ||
+        (skin && frame.skin_m.size() != recording.skin.positions.size())) {
+      throw Error("the recording is not of this character");
+    }
+    ByteWriter out;
+    out.value(frame.time_s);
+    out.array(frame.posture.data(), frame.posture.size());
+    out.array(frame.soft_shapes.data(), frame.soft_shapes.size());
+    out.value(static_cast<std::uint8_t>(skin));
+    out.array(frame.skin_m.data(), frame.skin_m.size());
+    put(out.bytes);
+  }
+  ByteWriter tail;
+  eachSkinStat(recording.stats, [&](const auto& value) { tail.value(value); });
+  tail.value(recording.wall_s);
+  tail.value(recording.simulated_s);
+  tail.value(recording.state_hash);
+  put(tail.bytes);
+}
+
+}  // namespace
+
+void writeCache(const CharacterDef& def, const Recording& recording, const std::string& path,
+                const Texture* texture) {
+  WholeFile file(path);
+  putCache(def, recording, texture, [&](std::string_view bytes) { file.write(bytes); });
+  file.commit();
+}
+
+std::string cacheBytes(const CharacterDef& def, const Recording& recording,
+                       const Texture* texture) {
+  std::string out;
+  putCache(def, recording, texture, [&](std::string_view bytes) { out += bytes; });
+  return out;
+}
+
+Cache parseCache(std::string_view bytes, const std::string& file) {
+  ByteReader in(bytes, file);
+  if (!isCache(bytes)) in.fail("is not a Fascia cache");
+  in.take(kCacheMagic.size());
+  const auto version = in.value<std::uint32_t>();
+  if (version < kPlainVersion || version > kSoftVersion) {
+    in.fail("has cache format " + std::to_string(version) + ", this program reads up to format " +
+            std::to_string(kSoftVersion));
+  }
+  Cache cache;
+  cache.def = readCharacterText(in.text(), file).def;
+  cache.texture.bytes = in.text();
+  if (!cache.texture.empty() && imageFormat(cache.texture.bytes) == ImageFormat::unknown) {
+    in.fail("has a texture that is neither a PNG nor a JPEG");
+  }
+  Recording& recording = cache.recording;
+  recording.motion = in.text();
+  if (cache.def.rig) cache.def.rig->model = std::make_shared<const RiggedModel>(readRig(in));
+  const auto shapes =
+      version == kSoftVersion ? static_cast<std::size_t>(in.value<std::uint64_t>()) : 0;
+  recording.frame_rate_hz = in.value<double>();
+  if (!(recording.frame_rate_hz > 0 && recording.frame_rate_hz <= 1e6)) {
+    in.fail("has a frame rate out of range");
+  }
+  recording.loop = in.value<std::uint8_t>() != 0;
+  recording.skin = readMesh(in);
+  const std::size_t drawn = recording.skin.positions.size();
+  if (cache.def.rig && drawn != 0 && drawn != cache.def.rig->model->vertices.size()) {
+    in.fail("has a mesh that is not its rig's");
+  }
+  const auto frames = in.value<std::uint64_t>();
+  const std::size_t postureSize = valueCount(cache.def);
+  for (std::uint64_t f = 0; f < frames; ++f) {
+    recording.frames.push_back(readFrame(in, postureSize, shapes, recording.skin.positions.size()));
+  }
+  eachSkinStat(recording.stats,
+               [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });
+  recording.wall_s = in.value<double>();
+  recording.simulated_s = in.value<double>();
+  recording.state_hash = in.value<std::uint64_t>();
+  if (in.left() > 0) in.fail("has bytes after its end");
+  return cache;
+}
+
+std::string readCacheBytes(const std::string& path) {
+  return readFile(path, kMaxCacheBytes);
+}
+
+Cache readCache(const std::string& path) {
+  return parseCache(readCacheBytes(path), path);
+}
+
+}  // namespace fascia

@@ -1,0 +1,235 @@
+#include <fascia/io/documents/character_codecs.h>
+
+namespace fascia {
+namespace {
+
+constexpr NumberRange kTime{0, 1e6};
+constexpr NumberRange kShape{-1, 1};  // tension, continuity, bias
+
+// What a track animates decides the unit of its keys.
+class ChannelUnit {
+ public:
+  explicit ChannelUnit(const TrackDef& track) {
+    if (track.target == TrackDef::Target::joint) {
+      dof_ = dofFromName(track.channel).value_or(Dof::rx);
+      suffix_ = '_' + dofUnit(*dof_);
+    } else {
+      parameter_ = track.channel;
+      suffix_ = isAngleName(parameter_) ? "_deg" : parameter_.ends_with("_m") ? "_m" : "";
+    }
+  }
+
+  std::string valueKey() const { return "value" + suffix_; }
+  Json write(double value) const {
+    return dof_ ? dofJson(*dof_, value) : parameterJson(parameter_, value);
+  }
+  bool read(const Json& json, const JsonPath& path, Reading& reading, double& value) const {
+    return dof_ ? readDofValue(*dof_, json, path, reading, value)
+                : readParameter(parameter_, json, path, reading, {}, value);
+  }
+
+ private:
+  std::optional<Dof> dof_;
+  std::string parameter_, suffix_;
+};
+
+// [time, value], or {"t_s": 2, "value_deg": -10, "tension": 0.5}.
+void readKey(const Json& json, const JsonPath& path, Reading& reading, const ChannelUnit& unit,
+             Key& key) {
+  if (json.is(Json::Kind::list) && json.list().size() == 2) {
+    readNumber(json.list()[0], path[0], reading, kTime, key.time_s);
+    unit.read(json.list()[1], path[1], reading, key.value);
+    return;
+  }
+  if (!json.is(Json::Kind::object)) {
+    reading.unexpected(json, path, "[time, value] or an object");
+    return;
+  }
+  const std::string valueKey = unit.valueKey();
+  const std::pair<std::string_view, double*> shape[] = {
+      {"tension", &key.tension}, {"continuity", &key.continuity}, {"bias", &key.bias}};
+  for (const Json::Member& member : json.object()) {
+    const JsonPath at = path[std::string_view(member.key)];
+    NearestName nearest(member.key);
+    nearest.offer("t_s");
+    nearest.offer(valueKey);
+    bool known = member.key == "t_s" || member.key == valueKey;
+    if (member.key == "t_s") readNumber(member.value, at, reading, kTime, key.time_s);
+    if (member.key == valueKey) unit.read(member.value, at, reading, key.value);
+    for (const auto& [name, target] : shape) {
+      nearest.offer(name);
+      if (member.key != name) continue;
+      readNumber(member.value, at, reading, kShape, *target);
+      known = true;
+    }
+    if (!known) {
+      reading.fault(member.value, at, "unknown key " + shown(member.key), nearest.hint());
+    }
+  }
+  for (const std::string& name : {std::string("t_s"), valueKey}) {
+    if (!json.find(name)) reading.fault(json, path, "the key " + shown(name) + " is missing");
+  }
+}
+
+Json keyJson(const Key& key, const ChannelUnit& unit) {
+  if (key.tension == 0 && key.continuity == 0 && key.bias == 0) {
+    return Json::List{key.time_s, unit.write(key.value)};
+  }
+  Json out;
+  out.set("t_s", key.time_s);
+  out.set(unit.valueKey(), unit.write(key.value));
+  if (key.tension != 0) out.set("tension", key.tension);
+  if (key.continuity != 0) out.set("continuity", key.continuity);
+  if (key.bias != 0) out.set("bias", key.bias);
+  return out;
+}
+
+Json typed(const char* type) {
+  Json out;
+  out.set("type", type);
+  return out;
+}
+
+Json keySchema() {
+  Json pair = typed("array");
+  pair.set("description", "[time in seconds, value]");
+  pair.set("minItems", 2);
+  pair.set("maxItems", 2);
+  pair.set("items", NumberRange{}.schema());
+  Json properties;
+  properties.set("t_s", kTime.schema());
+  Json::List values;
+  for (const char* key : {"value_deg", "value_m", "value"}) {
+    properties.set(key, NumberRange{}.schema());
+    Json one;
+    one.set("required", Json::List{key});
+    values.push_back(std::move(one));
+  }
+  for (const char* key : {"tension", "continuity", "bias"}) properties.set(key, kShape.schema());
+  Json full = typed("object");
+  full.set("properties", std::move(properties));
+  full.set("required", Json::List{"t_s"});
+  full.set("oneOf", std::move(values));
+  full.set("additionalProperties", false);
+  Json out;
+  out.set("anyOf", Json::List{std::move(pair), std::move(full)});
+  return out;
+}
+
+// {"joint": "hips", "dof": "rx", "keys": …} or {"solid": "belly", "parameter": "radius_m", …}.
+class TrackCodec final : public Codec<TrackDef> {
+ public:
+  void read(const Json& json, const JsonPath& path, Reading& reading,
+            TrackDef& track) const override {
+    if (!reading.expect(json, Json::Kind::object, path)) return;
+    const bool solid = json.find("solid") != nullptr;
+    track.target = solid ? TrackDef::Target::solid : TrackDef::Target::joint;
+    const std::string_view known[] = {solid ? "solid" : "joint", solid ? "parameter" : "dof",
+                                      "keys"};
+    for (const Json::Member& member : json.object()) {
+      if (std::find(std::begin(known), std::end(known), member.key) != std::end(known)) continue;
+      NearestName nearest(member.key);
+      for (const std::string_view name : known) nearest.offer(name);
+      reading.fault(member.value, path[std::string_view(member.key)],
+                    "unknown key " + shown(member.key), nearest.hint());
+    }
+    for (const std::string_view name : known) {
+      if (!json.find(name)) reading.fault(json, path, "the key " + shown(name) + " is missing");
+    }
+    if (const Json* name = json.find(known[0])) {
+      names()->read(*name, path[known[0]], reading, track.name);
+    }
+    const Json* channel = json.find(known[1]);
+    const Json* keys = json.find("keys");
+    if (!channel || !readChannel(*channel, path[known[1]], reading, track) || !keys) return;
+    readKeys(*keys, path["keys"], reading, track);
+  }
+
+  Json write(const TrackDef& track) const override {
+    const bool joint = track.target == TrackDef::Target::joint;
+    Json out;
+    out.set(joint ? "joint" : "solid", track.name);
+    out.set(joint ? "dof" : "parameter", joint ? track.channel : fileName(track.channel));
+    const ChannelUnit unit(track);
+    Json::List keys;
+    for (const Key& key : track.keys) keys.push_back(keyJson(key, unit));
+    out.set("keys", std::move(keys));
+    return out;
+  }
+
+  Json schema() const override {
+    Json keys = typed("array");
+    keys.set("description",
+             "Kochanek-Bartels keys by increasing time; degrees for rotations, else metres or the "
+             "parameter's own unit");
+    keys.set("items", keySchema());
+    return oneOfTwo(keys);
+  }
+
+  bool same(const TrackDef&, const TrackDef&) const override { return false; }
+
+ private:
+  static bool readChannel(const Json& json, const JsonPath& path, Reading& reading,
+                          TrackDef& track) {
+    if (track.target == TrackDef::Target::joint) {
+      const std::size_t before = reading.issues.size();
+      Dof dof = Dof::rx;
+      dofCodec()->read(json, path, reading, dof);
+      track.channel = name(dof);
+      return reading.issues.size() == before;
+    }
+    names()->read(json, path, reading, track.channel);
+    track.channel = memoryName(track.channel);
+    return !track.channel.empty();
+  }
+
+  static void readKeys(const Json& json, const JsonPath& path, Reading& reading, TrackDef& track) {
+    if (!reading.expect(json, Json::Kind::list, path)) return;
+    if (json.list().size() > kMaxKeys) {
+      reading.unexpected(json, path, "at most " + std::to_string(kMaxKeys) + " keys");
+      return;
+    }
+    const ChannelUnit unit(track);
+    for (std::size_t i = 0; i < json.list().size(); ++i) {
+      Key key;
+      readKey(json.list()[i], path[i], reading, unit, key);
+      track.keys.push_back(key);
+    }
+  }
+
+  static Json variant(const char* what, const char* channel, Json channelSchema, const Json& keys) {
+    Json properties;
+    properties.set(what, names()->schema());
+    properties.set(channel, std::move(channelSchema));
+    properties.set("keys", keys);
+    Json out = typed("object");
+    out.set("properties", std::move(properties));
+    out.set("required", Json::List{what, channel, "keys"});
+    out.set("additionalProperties", false);
+    return out;
+  }
+
+  static Json oneOfTwo(const Json& keys) {
+    Json out;
+    out.set("description", "One animated number: of a joint, or of a solid");
+    out.set("anyOf", Json::List{variant("joint", "dof", dofCodec()->schema(), keys),
+                                variant("solid", "parameter", names()->schema(), keys)});
+    return out;
+  }
+};
+
+}  // namespace
+
+CodecPtr<MotionDef> motionCodec() {
+  using M = MotionDef;
+  using Object = ObjectCodec<M>;
+  auto codec = std::make_shared<Object>("A motion: keyed tracks.");
+  codec->field("name", &M::name, names(), "The motion's name", Object::Need::required)
+      .field("loop", &M::loop, booleans(), "Repeats; the last posture equals the first")
+      .field("duration_s", &M::duration_s, numbers({0, 1e6}), "0: the last key's time")
+      .field("tracks", &M::tracks, listOf<TrackDef>(std::make_shared<TrackCodec>(), kMaxListed),
+             "What moves");
+  return codec;
+}
+
+}  // namespace fascia

@@ -1,0 +1,262 @@
+#include <fascia/io/rig_import/assimp/assimp_scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+#include <assimp/scene.h>
+
+#include <fascia/base/error.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/picture/image.h>
+#include <fascia/io/rig_import/assimp/assimp_motion.h>
+#include <fascia/io/rig_import/rig_import_surface.h>
+
+namespace fascia {
+namespace {
+
+constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
+
+Eigen::Vector3f vectorOf(const aiVector3D& v) {
+  return {v.x, v.y, v.z};
+}
+
+// FBX says how many centimetres its unit is; the other formats are converted to metres.
+double unitOf(const aiScene& scene) {
+  double centimetres = 0;
+  float single = 0;
+  if (!scene.mMetaData) return 1;
+  if (!scene.mMetaData->Get("UnitScaleFactor", centimetres)) {
+    if (!scene.mMetaData->Get("UnitScaleFactor", single)) return 1;
+    centimetres = single;
+  }
+  return centimetres > 1e-6 && centimetres < 1e6 ? 0.01 * centimetres : 1;
+}
+
+class AssimpAssembler {
+ public:
+  AssimpAssembler(const aiScene& scene, const std::string& path)
+      : scene_(scene), path_(path), nodes_(scene, unitOf(scene)) {
+    model_.name = std::filesystem::path(path).stem().string();
+    model_.sourceFile = path;
+  }
+
+  RiggedModel build() {
+    addJoints();
+    for (unsigned m = 0; m < scene_.mNumMaterials; ++m) addMaterial(*scene_.mMaterials[m]);
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      const aiNode& node = nodes_.node(n);
+      for (unsigned m = 0; m < node.mNumMeshes; ++m) addPart(n, *scene_.mMeshes[node.mMeshes[m]]);
+    }
+    buildSimulatedSurface(positions_m_, weights_, model_);
+    model_.motions = sampleMotions(scene_, nodes_, nodeOfJoint_, model_);
+    makeNamesUnique(model_);
+    return std::move(model_);
+  }
+
+ private:
+  void addJoints();
+  std::map<std::size_t, AssimpFrame> bindPoses() const;
+  void addMaterial(const aiMaterial& material);
+  std::vector<std::uint8_t> pictureOf(const std::string& name) const;
+  void addPart(std::size_t node, const aiMesh& mesh);
+  void addWeights(std::size_t node, const aiMesh& mesh);
+
+  const aiScene& scene_;
+  const std::string& path_;
+  AssimpNodes nodes_;
+  std::vector<std::size_t> nodeOfJoint_;
+  std::vector<int> jointOfNode_;  // -1: none
+  RiggedModel model_;
+  std::vector<Eigen::Vector3f> positions_m_;
+  std::vector<PointWeights> weights_;
+};
+
+// Where the skins say that their bones are: node -> frame in the world. The first mesh decides.
+std::map<std::size_t, AssimpFrame> AssimpAssembler::bindPoses() const {
+  std::map<std::size_t, AssimpFrame> poses;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const aiNode& node = nodes_.node(n);
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+      const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[m]];
+      for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+        const int bone = nodes_.find(mesh.mBones[b]->mName.C_Str());
+        const AssimpFrame toBone = affineOf(mesh.mBones[b]->mOffsetMatrix);
+        if (bone < 0 || std::abs(toBone.linear().determinant()) < 1e-30) continue;
+        poses.try_emplace(static_cast<std::size_t>(bone), nodes_.world(n) * toBone.inverse());
+      }
+    }
+  }
+  return poses;
+}
+
+// Every bone and all that it hangs on, up to the lowest node that holds all of them.
+void AssimpAssembler::addJoints() {
+  const std::map<std::size_t, AssimpFrame> poses = bindPoses();
+  if (poses.empty()) {
+    Issue issue;
+    issue.where.file = path_;
+    issue.message = "needs a rig: found a surface without bones";
+    issue.hint = "rig it in another program, or take a file that has bones";
+    throw Error(std::move(issue));
+  }
+  std::vector<std::size_t> bonesBelow(nodes_.size(), 0);
+  for (const auto& [bone, pose] : poses) {
+    for (int n = static_cast<int>(bone); n >= 0; n = nodes_.parent(static_cast<std::size_t>(n))) {
+      ++bonesBelow[static_cast<std::size_t>(n)];
+    }
+  }
+  jointOfNode_.assign(nodes_.size(), -1);
+  std::vector<AssimpFrame> frames;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const int up = nodes_.parent(n);
+    const int parent = up < 0 ? -1 : jointOfNode_[static_cast<std::size_t>(up)];
+    // The root is the lowest that holds all bones and hangs on none.
+    const bool holdsAll = bonesBelow[n] == poses.size();
+    const auto below = [&](std::size_t child) {
+      return nodes_.parent(child) == static_cast<int>(n) && bonesBelow[child] == poses.size();
+    };
+    bool isLowest = holdsAll;
+    for (std::size_t c = n + 1; isLowest && !poses.contains(n) && c < nodes_.size(); ++c) {
+      isLowest = !below(c);
+    }
+    if (bonesBelow[n] == 0 || (parent < 0 && !isLowest)) continue;
+    const auto pose = poses.find(n);
+    const AssimpFrame frame = pose != poses.end() ? pose->second
+                              : parent >= 0       ? frames[static_cast<std::size_t>(parent)] *
+                                                  affineOf(nodes_.node(n).mTransformation)
+                                            : nodes_.world(n);
+    jointOfNode_[n] = static_cast<int>(model_.joints.size());
+    nodeOfJoint_.push_back(n);
+    frames.push_back(frame);
+    model_.joints.push_back({nodes_.node(n).mName.C_Str(), parent, rigidOf(frame), -1});
+  }
+}
+
+std::vector<std::uint8_t> AssimpAssembler::pictureOf(const std::string& name) const {
+  std::vector<std::uint8_t> bytes;
+  const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
+  if (embedded && embedded->mHeight == 0) {  // as it was encoded
+    const auto* data = reinterpret_cast<const std::uint8_t*>(embedded->pcData);
+    bytes.assign(data, data + embedded->mWidth);
+  } else if (!embedded) {
+    // Paths in such files are of the machine that made them: only the name is used.
+    const std::size_t slash = name.find_last_of("/\\");
+    const std::string bare = slash == std::string::npos ? name : name.substr(slash + 1);
+    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+    try {
+      const std::string text = readFile((folder / bare).string(), kMaxPictureBytes);
+      bytes.assign(text.begin(), text.end());
+    } catch (const Error&) {
+      bytes.clear();  // a character without its picture is still a character
+    }
+  }
+  if (!isPicture(bytes)) bytes.clear();
+  return bytes;
+}
+
+void AssimpAssembler::addMaterial(const aiMaterial& material) {
+  RigMaterial out;
+  aiString text;
+  if (material.Get(AI_MATKEY_NAME, text) == AI_SUCCESS) out.name = text.C_Str();
+  aiColor4D color(0.8f, 0.8f, 0.8f, 1);
+  if (material.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
+    material.Get(AI_MATKEY_COLOR_DIFFUSE, color);
+  }
+  for (unsigned i = 0; i < 4; ++i) {
+    const float value = color[i];
+    out.color[i] = std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 1;
+  }
+  int twoSided = 0;
+  if (material.Get(AI_MATKEY_TWOSIDED, twoSided) == AI_SUCCESS) out.doubleSided = twoSided != 0;
+  for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+    if (out.texture.empty() && material.GetTexture(type, 0, &text) == AI_SUCCESS) {
+      out.texture = pictureOf(text.C_Str());
+    }
+  }
+  model_.materials.push_back(std::move(out));
+}
+
+void AssimpAssembler::addWeights(std::size_t node, const aiMesh& mesh) {
+  std::vector<std::vector<std::pair<std::uint16_t, float>>> influences(mesh.mNumVertices);
+  for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+    const aiBone& bone = *mesh.mBones[b];
+    const int found = nodes_.find(bone.mName.C_Str());
+    const int joint = found < 0 ? -1 : jointOfNode_[static_cast<std::size_t>(found)];
+    if (joint < 0) continue;
+    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+      const aiVertexWeight& weight = bone.mWeights[w];
+      if (weight.mVertexId >= mesh.mNumVertices) continue;
+      influences[weight.mVertexId].emplace_back(static_cast<std::uint16_t>(joint), weight.mWeight);
+    }
+  }
+  // What has no bones moves with the joint that holds it.
+  int carrier = static_cast<int>(node);
+  while (carrier >= 0 && jointOfNode_[static_cast<std::size_t>(carrier)] < 0) {
+    carrier = nodes_.parent(static_cast<std::size_t>(carrier));
+  }
+  PointWeights rigid;
+  rigid.joint[0] =
+      carrier < 0 ? std::uint16_t{0}
+                  : static_cast<std::uint16_t>(jointOfNode_[static_cast<std::size_t>(carrier)]);
+  rigid.weight[0] = 1;
+  for (auto& list : influences) {
+    PointWeights packed;
+    weights_.push_back(packWeights(list, packed) ? packed : rigid);
+  }
+}
+
+void AssimpAssembler::addPart(std::size_t node, const aiMesh& mesh) {
+  RigPart part;
+  part.name = nodes_.node(node).mName.C_Str();
+  part.material = static_cast<int>(mesh.mMaterialIndex);
+  part.firstVertex = static_cast<std::uint32_t>(model_.vertices.size());
+  part.vertexCount = mesh.mNumVertices;
+  part.firstTriangle = static_cast<std::uint32_t>(model_.drawnTriangles.size());
+  const AssimpFrame& world = nodes_.world(node);
+  const Eigen::Matrix3f toNormal = world.linear().inverse().transpose().cast<float>();
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const Eigen::Vector3f place =
+        (world * vectorOf(mesh.mVertices[v]).cast<double>()).cast<float>();
+    if (!place.allFinite()) {
+      Issue issue;
+      issue.where.file = path_;
+      issue.message = "has a vertex that is no number, in mesh " + part.name;
+      throw Error(std::move(issue));
+    }
+    positions_m_.push_back(place);
+    RigVertex vertex;
+    if (mesh.mNormals) vertex.normal = (toNormal * vectorOf(mesh.mNormals[v])).normalized();
+    if (!vertex.normal.allFinite()) vertex.normal = Eigen::Vector3f::UnitY();
+    if (mesh.mTextureCoords[0]) {
+      const aiVector3D& uv = mesh.mTextureCoords[0][v];
+      if (std::isfinite(uv.x) && std::isfinite(uv.y)) vertex.uv = {uv.x, 1 - uv.y};
+    }
+    model_.vertices.push_back(vertex);
+  }
+  const bool mirrored = world.linear().determinant() < 0;
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    std::array<std::uint32_t, 3> corners;
+    for (unsigned k = 0; k < 3; ++k) corners[k] = part.firstVertex + face.mIndices[k];
+    if (mirrored) std::swap(corners[1], corners[2]);
+    model_.drawnTriangles.push_back(corners);
+  }
+  part.triangleCount =
+      static_cast<std::uint32_t>(model_.drawnTriangles.size()) - part.firstTriangle;
+  addWeights(node, mesh);
+  model_.parts.push_back(std::move(part));
+}
+
+}  // namespace
+
+RiggedModel rigFromAssimp(const aiScene& scene, const std::string& path) {
+  return AssimpAssembler(scene, path).build();
+}
+
+}  // namespace fascia

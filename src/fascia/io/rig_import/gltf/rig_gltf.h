@@ -1,0 +1,11 @@
+#pragma once
+
+#include <fascia/io/gltf/gltf_document.h>
+#include <fascia/io/rig_import/rig_import.h>
+
+namespace fascia {
+
+// A rigged character out of a glTF that was read; see readRiggedModel.
+RiggedModel rigFromGltf(const GltfDocument& document, const RigImportOptions& options = {});
+
+}  // namespace fascia

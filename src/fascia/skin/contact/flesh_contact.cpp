@@ -1,0 +1,234 @@
+#include <fascia/skin/contact/flesh_contact.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fascia/base/parallel.h>
+
+namespace fascia {
+namespace {
+
+// Bound of how far a point goes when pushed out, over the sum of the depths: along a crease's flank
+// the way is longer than the depth.
+constexpr float kPushMargin = 8;
+// Gap of a block and a solid that have not been tested yet.
+constexpr float kUnknown = -1e30f;
+// Blocks handed to a thread at once; smaller skins are not worth waking threads for.
+constexpr std::size_t kBlocksPerTask = 128;
+
+bool near(const BlockBox& a, const Box& b, float reach) {
+  for (int k = 0; k < 3; ++k)
+    if (a.low[k] - reach > b.high[k] || a.high[k] + reach < b.low[k]) return false;
+  return true;
+}
+
+// One block of points against the solids of a field.
+struct BlockTest {
+  const Field& field;
+  const PointBlock& block;
+  ContactLanes& lanes;
+  std::span<std::int32_t> nearby;  // scratch for as many as the field has solids
+  std::span<float> gaps = {};      // per solid: no point is nearer than this; updated by visits
+  std::size_t nearbyCount = 0;
+
+  bool findSolids(const BlockBox& box, std::span<const Box> boxes, float reach) {
+    nearbyCount = 0;
+    for (std::size_t s = 0; s < boxes.size(); ++s)
+      if ((gaps.empty() || gaps[s] <= reach) && near(box, boxes[s], reach))
+        nearby[nearbyCount++] = static_cast<std::int32_t>(s);
+    return nearbyCount > 0;
+  }
+
+  // Visits every nearby solid once, moving points out of it at once. Returns the largest depth.
+  float visit(bool move) {
+    lanes.nearest.fill(1e30f);
+    lanes.clearance.fill(1e30f);
+    lanes.pushed.fill(0.f);
+    float deepest = 0;
+    for (const std::int32_t s : nearby.first(nearbyCount)) {
+      field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
+                     lanes.normal.view(block.count));
+      const float gap = absorbSolid(static_cast<float>(s), move, block.count, lanes);
+      if (!gaps.empty()) gaps[static_cast<std::size_t>(s)] = gap;
+      deepest = std::max(deepest, -gap);
+    }
+    return deepest;
+  }
+
+  // Like visit(true), until no point is inside any solid or `passes` are used up. Returns the sum
+  // of the passes' depths.
+  float leaveSolids(int passes, float retest_m) {
+    float moved = 0;
+    for (int pass = 0; pass < passes; ++pass) {
+      const float depth = visit(true);
+      moved += depth;
+      if (nearbyCount == 1 || !mustRetest(retest_m)) break;
+    }
+    return moved;
+  }
+
+  // Whether a point that was pushed out of one solid may have been pushed into another.
+  bool mustRetest(float retest_m) const {
+    bool must = false;
+    for (std::size_t l = 0; l < block.count; ++l)
+      must |= lanes.pushed[l] > retest_m && lanes.clearance[l] < lanes.pushed[l];
+    return must;
+  }
+
+  // Each point's from its nearest solid: solids that swell take long to say how fast.
+  void readFleshVelocities() {
+    ContactLanes::Lanes3 place, velocity;
+    std::array<std::size_t, PointBlock::kCapacity> lane;
+    for (const std::int32_t s : nearby.first(nearbyCount)) {
+      std::size_t count = 0;
+      for (std::size_t l = 0; l < block.count; ++l) {
+        if (lanes.nearestSolid[l] != static_cast<float>(s)) continue;
+        place.x[count] = lanes.place.x[l];
+        place.y[count] = lanes.place.y[l];
+        place.z[count] = lanes.place.z[l];
+        lane[count++] = l;
+      }
+      if (count == 0) continue;
+      field.velocity(SolidId(s), place.view(count), velocity.view(count));
+      for (std::size_t i = 0; i < count; ++i) {
+        lanes.fleshVelocity.x[lane[i]] = velocity.x[i];
+        lanes.fleshVelocity.y[lane[i]] = velocity.y[i];
+        lanes.fleshVelocity.z[lane[i]] = velocity.z[i];
+      }
+    }
+  }
+};
+
+void readBoxes(const Field& field, std::vector<Box>& boxes) {
+  boxes.resize(field.solidCount());
+  for (std::size_t s = 0; s < boxes.size(); ++s)
+    boxes[s] = field.bounds(SolidId(static_cast<std::int64_t>(s)));
+}
+
+}  // namespace
+
+FleshContact::FleshContact(std::vector<PointBlock> blocks)
+    : blocks_(std::move(blocks)), results_(blocks_.size()) {}
+
+FleshContact::Result FleshContact::project(const Field& field, const PointModel& points,
+                                           float reach_m, float restitution, VectorArray& position,
+                                           VectorArray& velocity, PointSurroundings& around) {
+  readBoxes(field, boxes_);
+  followSolids(field);
+  last_.resize(position.size());
+  const std::size_t solids = boxes_.size();
+  const std::size_t tasks = (blocks_.size() + kBlocksPerTask - 1) / kBlocksPerTask;
+  nearby_.resize(tasks * solids);
+  parallelFor(tasks, [&](std::size_t t) {
+    ContactLanes lanes{};
+    const std::span scratch(nearby_.data() + t * solids, solids);
+    const std::size_t end = std::min(blocks_.size(), (t + 1) * kBlocksPerTask);
+    for (std::size_t b = t * kBlocksPerTask; b < end; ++b) {
+      BlockMotion motion;
+      const BlockBox box =
+          loadContactLanes(blocks_[b], position, points.fat, lanes, &last_, &motion);
+      const std::span gaps(gaps_.data() + b * solids, solids);
+      for (std::size_t s = 0; s < solids; ++s) {
+        // Also what is not a number makes a gap unknown.
+        const float nearer = approach(motion, motions_[s]);
+        gaps[s] = nearer < -kUnknown ? gaps[s] - nearer : kUnknown;
+      }
+      BlockTest test{field, blocks_[b], lanes, scratch, gaps};
+      float searched = reach_m, pushed = 0;
+      bool any = test.findSolids(box, boxes_, searched);
+      for (int search = 0; any && search < kSearches; ++search) {
+        pushed += test.leaveSolids(kPasses, kRetest_m);
+        if (kPushMargin * pushed <= searched) break;
+        // Pushed so far that solids beyond the search may have come near.
+        std::fill(gaps.begin(), gaps.end(), kUnknown);
+        searched = reach_m + 2 * kPushMargin * pushed;
+        any = test.findSolids(box, boxes_, searched);
+      }
+      for (float& gap : gaps) gap -= kPushMargin * pushed;
+      results_[b].maxCorrection_m = pushed;
+      if (any) test.readFleshVelocities();
+      const std::size_t count = blocks_[b].count;
+      const ContactFindings found{lanes.place.view(count), lanes.nearest.data(),
+                                  lanes.nearestNormal.view(count), lanes.fleshVelocity.view(count)};
+      results_[b].maxSpeed_m_per_s = finishContact(blocks_[b], any, reach_m, restitution, points,
+                                                   found, position, velocity, around);
+    }
+  });
+  return largest(results_);
+}
+
+// How much nearer a block and a solid can have come: the difference of their points' ways at the
+// block's centre, and how much the ways differ over the block.
+float FleshContact::approach(const BlockMotion& block, const SolidMotion& solid) {
+  const Eigen::Vector3f center(block.center[0], block.center[1], block.center[2]);
+  const Eigen::Vector3f way(block.way[0], block.way[1], block.way[2]);
+  const Eigen::Vector3f matter = solid.change * (center - solid.origin) + solid.shift;
+  return (way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m;
+}
+
+// The motion of each solid since the last call, from its outline.
+void FleshContact::followSolids(const Field& field) {
+  const std::size_t solids = boxes_.size();
+  const bool first = motions_.size() != solids;
+  if (first) {
+    gaps_.assign(blocks_.size() * solids, kUnknown);
+    motions_.resize(solids);
+    corners_.resize(solids * kCorners);
+  }
+  for (std::size_t s = 0; s < solids; ++s) {
+    const SolidId id(static_cast<std::int64_t>(s));
+    const Transform frame = field.frame(id);
+    const Field::Outline& outline = field.outline(id);
+    Corners now;
+    for (std::size_t c = 0; c < kCorners; ++c) now[c] = frame.point(outline[c]).cast<float>();
+    Eigen::Vector3f* before = corners_.data() + s * kCorners;
+    if (first) std::copy(now.begin(), now.end(), before);
+    motions_[s] = motionBetween(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
+    std::copy(now.begin(), now.end(), before);
+  }
+}
+
+FleshContact::SolidMotion FleshContact::motionBetween(
+    std::span<const Eigen::Vector3f, kCorners> before, const Corners& now) {
+  SolidMotion m;
+  Eigen::Matrix3f edges, edgesNow;
+  for (int a = 0; a < 3; ++a) {
+    edges.col(a) = before[std::size_t{1} << a] - before[0];
+    edgesNow.col(a) = now[std::size_t{1} << a] - now[0];
+  }
+  const Eigen::Matrix3f map = edgesNow * edges.inverse();
+  m.change = map - Eigen::Matrix3f::Identity();
+  m.origin = before[0];
+  m.shift = now[0] - before[0];
+  m.turn = m.change.norm();
+  // Distances change where the map is not rigid, and where the corners do not follow it.
+  const float size = (before[kCorners - 1] - before[0]).norm();
+  m.extra_m = 2 * size * (map.transpose() * map - Eigen::Matrix3f::Identity()).norm();
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Eigen::Vector3f way = m.change * (before[c] - m.origin) + m.shift;
+    m.extra_m += (now[c] - before[c] - way).norm();
+  }
+  // A box without volume has no map: nothing is known then.
+  if (!std::isfinite(m.turn) || !std::isfinite(m.extra_m)) {
+    m = {Eigen::Matrix3f::Zero(), m.origin, m.shift, 0, -kUnknown};
+  }
+  return m;
+}
+
+float FleshContact::deepest(const Field& field, const PointModel& points,
+                            const VectorArray& position) const {
+  std::vector<Box> boxes;
+  readBoxes(field, boxes);
+  std::vector<std::int32_t> nearby(boxes.size());
+  ContactLanes lanes{};
+  float depth = 0;
+  for (const PointBlock& block : blocks_) {
+    const BlockBox box = loadContactLanes(block, position, points.fat, lanes);
+    BlockTest test{field, block, lanes, nearby};
+    if (test.findSolids(box, boxes, 0)) depth = std::max(depth, test.visit(false));
+  }
+  return depth;
+}
+
+}  // namespace fascia

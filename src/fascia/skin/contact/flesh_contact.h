@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <fascia/skin/contact/skin_contact.h>
+#include <fascia/skin/point/point_kernels.h>
+
+namespace fascia {
+
+// Contact of a skin with every solid. Works on blocks of points that lie together.
+class FleshContact final : public SkinContact {
+ public:
+  FleshContact() = default;
+  explicit FleshContact(std::vector<PointBlock> blocks);
+
+  // Candidate solids come from boxes of blocks against boxes of solids, and from the gap that was
+  // found when a block was last tested against a solid, less the ways both have gone since: solids
+  // that cannot have come within reach are not asked again.
+  Result project(const Field& field, const PointModel& points, float reach_m, float restitution,
+                 VectorArray& position, VectorArray& velocity, PointSurroundings& around) override;
+  float deepest(const Field& field, const PointModel& points,
+                const VectorArray& position) const override;
+
+ private:
+  static constexpr int kSearches = 4;  // each at least twice as wide as the one before
+
+  std::vector<PointBlock> blocks_;
+  std::vector<Result> results_;
+  std::vector<Box> boxes_;
+  std::vector<std::int32_t> nearby_;  // per task: as many as there are solids
+
+  // What is known from the last call; it saves work and changes no result.
+  VectorArray last_;         // positions
+  std::vector<float> gaps_;  // blocks x solids: no point of the block is nearer
+  // A solid's motion since the last call as an affine map: x goes by change (x − origin) + shift.
+  struct SolidMotion {
+    Eigen::Matrix3f change;
+    Eigen::Vector3f origin, shift;
+    float turn;     // norm of change
+    float extra_m;  // what is not rigid: swelling and bending
+  };
+  static float approach(const BlockMotion& block, const SolidMotion& solid);
+  void followSolids(const Field& field);
+  static constexpr std::size_t kCorners = Field::kOutline;
+  using Corners = std::array<Eigen::Vector3f, kCorners>;
+  static SolidMotion motionBetween(std::span<const Eigen::Vector3f, kCorners> before,
+                                   const Corners& now);
+  std::vector<SolidMotion> motions_;
+  std::vector<Eigen::Vector3f> corners_;  // of each solid's outline
+};
+
+}  // namespace fascia

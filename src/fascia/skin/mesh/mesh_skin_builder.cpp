@@ -1,0 +1,337 @@
+#include <fascia/skin/mesh/mesh_skin_builder.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include <fascia/pose/softness.h>
+#include <fascia/skin/grid/grid_skin_builder.h>
+#include <fascia/skin/mesh/mesh_topology.h>
+#include <fascia/skin/mesh/rigged_skin.h>
+
+namespace fascia {
+namespace {
+
+// A mesh is as fine as its author wanted, fingers and faces finest. Steps of this length follow
+// whatever one sees; points that would need shorter ones get added mass and move with their
+// anchors.
+constexpr double kStep_s = 1.0 / 480;
+// A joint with a smaller share of a point does not press on it.
+constexpr float kFeltWeight = 0.05f;
+// How far a point may slide from its anchor: so much of its fat, and this share of the model's
+// size.
+constexpr double kSlideOfFat = 0.6, kLeastSlide = 0.0015;
+// Pieces with a smaller share of the model's size are carried as they are.
+constexpr double kSmallPiece = 0.04;
+
+// Sorts [first, last) into compact runs of whole blocks: halves along the longest side, in whole
+// blocks, until one is left.
+void sortIntoBlocks(const RiggedModel& rig, std::uint32_t* first, std::uint32_t* last) {
+  const auto count = static_cast<std::size_t>(last - first);
+  if (count <= PointBlock::kCapacity) {
+    std::sort(first, last);
+    return;
+  }
+  Box box;
+  for (const std::uint32_t* p = first; p != last; ++p) box.add(rig.points_m[*p].cast<double>());
+  Eigen::Index axis;
+  box.size().maxCoeff(&axis);
+  const std::size_t blocks = (count + PointBlock::kCapacity - 1) / PointBlock::kCapacity;
+  std::uint32_t* middle = first + (blocks / 2) * PointBlock::kCapacity;
+  std::nth_element(first, middle, last, [&](std::uint32_t a, std::uint32_t b) {
+    const float x = rig.points_m[a][axis], y = rig.points_m[b][axis];
+    return x < y || (x == y && a < b);
+  });
+  sortIntoBlocks(rig, first, middle);
+  sortIntoBlocks(rig, middle, last);
+}
+
+// Points on edges that only one triangle has: eyes, mouth, cuffs, the hem of an open sheet.
+std::vector<char> borderPoints(const RiggedModel& rig) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (const auto& t : rig.triangles)
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto [a, b] = std::minmax(t[e], t[(e + 1) % 3]);
+      edges.push_back({a, b});
+    }
+  std::sort(edges.begin(), edges.end());
+  std::vector<char> border(rig.points_m.size(), 0);
+  for (std::size_t i = 0, j; i < edges.size(); i = j) {
+    for (j = i + 1; j < edges.size() && edges[j] == edges[i];) ++j;
+    if (j - i == 1) border[edges[i][0]] = border[edges[i][1]] = 1;
+  }
+  return border;
+}
+
+}  // namespace
+
+void MeshSkinBuilder::build() {
+  report_.checkValues(def_);
+  if (!checkDef() || !findJoints()) return;
+  findFelt();
+  measureFat();
+  chooseFixed();
+  orderPoints();
+  makeRestShape();
+  setQuantities();
+  makeModel();
+  makePoseSkin();
+}
+
+bool MeshSkinBuilder::checkDef() const {
+  bool ok = true;
+  if (def_.points) {
+    if (!def_.points->anchor.empty() || !def_.points->rest_position_m.empty()) {
+      report_.error("/points", "found anchors or rest positions",
+                    "an imported mesh brings its own");
+      ok = false;
+    }
+    ok = report_.checkPointLists(*def_.points, rig_.points_m.size(), "points of the mesh") && ok;
+  }
+  for (std::size_t i = 0; i < def_.parts.size(); ++i) {
+    const auto named = [&](const RigPart& part) {
+      return part.name == def_.parts[i].name ||
+             (part.material >= 0 &&
+              rig_.materials[static_cast<std::size_t>(part.material)].name == def_.parts[i].name);
+    };
+    if (std::any_of(rig_.parts.begin(), rig_.parts.end(), named)) continue;
+    report_.error("/parts/" + std::to_string(i) + "/name",
+                  "found no part or material named '" + def_.parts[i].name + "' in the mesh",
+                  "'fascia info' lists them");
+    ok = false;
+  }
+  return ok;
+}
+
+bool MeshSkinBuilder::findJoints() {
+  bool ok = true;
+  for (const RigJoint& j : rig_.joints) {
+    const JointId id = report_.findJoint("", j.name);
+    ok = ok && id.valid();
+    if (id.valid()) joints_.push_back({id.index(), base_.posedSkeleton.joint_world[id.index()]});
+  }
+  return ok;
+}
+
+// The solids that lie beneath a point: those of the joints that move it.
+void MeshSkinBuilder::findFelt() {
+  felt_.resize(rig_.points_m.size());
+  if (base_.flesh.solidCount() == 0) return;  // all skin and bones: carried by joints alone
+  std::vector<std::vector<SolidId>> ofJoint(base_.skeleton.jointCount());
+  for (std::size_t s = 0; s < base_.flesh.solidCount(); ++s) {
+    const SolidId solid(static_cast<std::int64_t>(s));
+    ofJoint[base_.flesh.joint(solid).index()].push_back(solid);
+  }
+  for (std::size_t p = 0; p < felt_.size(); ++p) {
+    for (std::size_t i = 0; i < PointWeights::kMost; ++i) {
+      if (rig_.weights[p].weight[i] < kFeltWeight) continue;
+      const std::size_t joint = joints_[rig_.weights[p].joint[i]].skeletonJoint;
+      const std::vector<SolidId>& solids = ofJoint[joint];
+      felt_[p].insert(felt_[p].end(), solids.begin(), solids.end());
+    }
+    if (felt_[p].empty()) felt_[p].push_back(nearestFlesh(base_.posedFlesh, modelPoint(p)).solid);
+  }
+}
+
+// What is not simulated, if the rest is: borders, small pieces and those without flesh beneath. And
+// what rules make rigid.
+void MeshSkinBuilder::chooseFixed() {
+  fixed_.assign(rig_.points_m.size(), 0);
+  // Pieces that one joint carries (armour, eyes, a robot) stay hard unless a rule says otherwise.
+  rigid_ = stiffPieces({rig_.points_m, rig_.weights, rig_.triangles, rig_.joints});
+  if (def_.pose.simulate) fixLoosePieces();
+  for (const SkinPartDef& rule : def_.parts)
+    for (const RigPart& part : rig_.parts) {
+      const bool material =
+          part.material >= 0 &&
+          rig_.materials[static_cast<std::size_t>(part.material)].name == rule.name;
+      if (part.name != rule.name && !material) continue;
+      for (std::uint32_t v = 0; v < part.vertexCount; ++v) {
+        const std::uint32_t point = rig_.vertices[part.firstVertex + v].point;
+        rigid_[point] = rule.rigid ? 1 : 0;
+        if (def_.pose.simulate) fixed_[point] = rigid_[point];
+      }
+    }
+}
+
+void MeshSkinBuilder::fixLoosePieces() {
+  fixed_ = borderPoints(rig_);
+  std::vector<Box> boxes(rig_.componentCount);
+  std::vector<std::size_t> points(rig_.componentCount), covered(rig_.componentCount);
+  for (std::size_t p = 0; p < rig_.points_m.size(); ++p) {
+    const std::uint32_t c = rig_.component[p];
+    boxes[c].add(modelPoint(p));
+    ++points[c];
+    covered[c] += covered_[p] ? 1u : 0u;
+  }
+  const double small = kSmallPiece * rig_.size_m();
+  for (std::size_t p = 0; p < fixed_.size(); ++p) {
+    const std::uint32_t c = rig_.component[p];
+    if (boxes[c].size().norm() < small || 2 * covered[c] < points[c]) fixed_[p] = 1;
+  }
+}
+
+void MeshSkinBuilder::orderPoints() {
+  order_.resize(rig_.points_m.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  const auto fixed = std::stable_partition(order_.begin(), order_.end(),
+                                           [&](std::uint32_t p) { return !fixed_[p]; });
+  elasticCount_ = static_cast<std::size_t>(fixed - order_.begin());
+  sortIntoBlocks(rig_, order_.data(), order_.data() + elasticCount_);
+  storageOf_.resize(order_.size());
+  for (std::size_t k = 0; k < order_.size(); ++k)
+    storageOf_[order_[k]] = static_cast<std::uint32_t>(k);
+  for (std::size_t k = elasticCount_; k < order_.size(); ++k) skin_.fixedPoints_.push_back(k);
+}
+
+void MeshSkinBuilder::makeRestShape() {
+  // Kernels read whole vectors, one beyond the last.
+  const std::size_t storage =
+      (order_.size() + GridLayout::kPad - 1) / GridLayout::kPad * GridLayout::kPad +
+      GridLayout::kPad;
+  skin_.rest_.resize(storage);
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const Eigen::Vector3f& p = rig_.points_m[order_[k]];
+    skin_.rest_.x[k] = p.x(), skin_.rest_.y[k] = p.y(), skin_.rest_.z[k] = p.z();
+  }
+  skin_.size_m_ = std::max(1e-6, rig_.size_m());
+}
+
+// How far a point's weight stretches its strand: so much higher lies the anchor.
+Vec3 MeshSkinBuilder::sag(std::size_t k) const {
+  const double stiffness = skin_.points_.tissueStiffness[k];
+  if (!(stiffness > 0)) return Vec3::Zero();
+  return skin_.points_.mass[k] / stiffness * skin_.settings_.gravity_m_per_s2;
+}
+
+TriangleMembrane MeshSkinBuilder::makeMembrane() const {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  TriangleMaterial material;
+  for (const auto& t : rig_.triangles) {
+    // Triangles between fixed points move as their joints do: they pull on nothing.
+    if (fixed_[t[0]] && fixed_[t[1]] && fixed_[t[2]]) continue;
+    triangles.push_back({storageOf_[t[0]], storageOf_[t[1]], storageOf_[t[2]]});
+    // u runs around the limb, as on a grid: across the way from the joint to the triangle's flesh.
+    const Joint& joint = joints_[rig_.weights[t[0]].joint[0]];
+    material.u.push_back(joint.rest_world.rotation.col(1).cast<float>());
+  }
+  const SkinQuantities& q = skin_.quantities_;
+  material.stretch_u = q[SkinQuantity::stretch_v];
+  material.stretch_v = q[SkinQuantity::stretch_u];
+  material.shear = q[SkinQuantity::shear];
+  material.bending = q[SkinQuantity::bending];
+  material.prestretch = q[SkinQuantity::prestretch];
+  material.max_stretch = static_cast<float>(def_.material.max_stretch);
+  return TriangleMembrane(triangles, skin_.rest_, material);
+}
+
+void MeshSkinBuilder::makeModel() {
+  TriangleMembrane membrane = makeMembrane();
+  skin_.contactResponse_ = {def_.material.friction_per_s, def_.material.restitution};
+  std::vector<std::size_t> points(order_.size());
+  std::iota(points.begin(), points.end(), 0u);
+  const std::span<const std::size_t> elastic = std::span(points).first(elasticCount_);
+  skin_.points_ =
+      makePointModel({skin_.quantities_, membrane.pointAreas(), membrane.stiffnessBound(),
+                      1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(order_.size()),
+                      points, skin_.fixedPoints_, elastic});
+  skin_.points_.carry = static_cast<float>(def_.tissue.carry);
+  skin_.points_.slideLimit.resize(elasticCount_);
+  for (std::size_t k = 0; k < elasticCount_; ++k) {
+    const double slide =
+        kSlideOfFat * double{skin_.quantities_[SkinQuantity::fat][k]} + kLeastSlide * skin_.size_m_;
+    skin_.points_.slideLimit[k] = static_cast<float>(slide + sag(k).norm());
+  }
+  skin_.defaultStep_s_ = kStep_s;
+
+  MeshTopology::Drawn drawn;
+  for (const RigVertex& v : rig_.vertices) {
+    drawn.points.push_back(storageOf_[v.point]);
+    drawn.uvs.push_back(v.uv);
+  }
+  drawn.triangles = rig_.drawnTriangles;
+  skin_.topology_ =
+      std::make_shared<MeshTopology>(order_.size(), std::move(membrane), std::move(drawn));
+}
+
+// The pose function, on points in storage order. Fat that was put on or taken away is in its rest
+// shape.
+void MeshSkinBuilder::makePoseSkin() {
+  const std::vector<Vec3> normals = pointNormals();
+  const SkinQuantities& q = skin_.quantities_;
+  const std::size_t count = order_.size();
+  std::vector<Eigen::Vector3f> rest;
+  std::vector<PointWeights> weights;
+  PoseDials dials;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t p = order_[k];
+    const double fat = double{q[SkinQuantity::fat][k] - naturalFat_[k]};
+    rest.push_back((modelPoint(p) + fat * normals[p]).cast<float>());
+    weights.push_back(rig_.weights[p]);
+    dials.rigid.push_back(rigid_[p]);
+  }
+  const auto listOf = [&](SkinQuantity quantity) {
+    return std::vector<float>(q[quantity].begin(),
+                              q[quantity].begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  dials.jiggle = listOf(SkinQuantity::jiggle);
+  dials.muscle = listOf(SkinQuantity::muscle);
+  dials.volume = listOf(SkinQuantity::volume);
+  dials.tightness = listOf(SkinQuantity::tightness);
+
+  auto rigged = std::make_shared<RiggedSkin>();
+  std::vector<RigJoint> joints = rig_.joints;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    joints[j].rest_world = joints_[j].rest_world;
+    rigged->joints.push_back({joints_[j].skeletonJoint, joints_[j].rest_world.inverse()});
+  }
+  rigged->skin =
+      std::make_shared<PoseSkin>(PoseSource{rest, weights, storedTriangles(), joints}, dials);
+  rigged->fleshSolids = base_.flesh.solidCount();
+  skin_.simulated_ = def_.pose.simulate;
+  VectorArray skin = skin_.rest_, anchors = skin_.rest_;
+  skin_.sag_ = VectorArray(skin_.rest_.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 s = k < elasticCount_ ? sag(k) : Vec3::Zero();
+    skin_.sag_.x[k] = static_cast<float>(s.x());
+    skin_.sag_.y[k] = static_cast<float>(s.y());
+    skin_.sag_.z[k] = static_cast<float>(s.z());
+    skin.x[k] = rest[k].x(), skin.y[k] = rest[k].y(), skin.z[k] = rest[k].z();
+    anchors.x[k] = skin.x[k] - skin_.sag_.x[k];
+    anchors.y[k] = skin.y[k] - skin_.sag_.y[k];
+    anchors.z[k] = skin.z[k] - skin_.sag_.z[k];
+  }
+  rigged->soft =
+      SoftRide(base_.flesh, base_.posedFlesh, base_.posedSkeleton.joint_world, skin, count);
+  skin_.rigged_ = std::move(rigged);
+  if (def_.fat.bulk_Pa > 0 && def_.pose.simulate) layFat(skin, anchors);
+}
+
+std::vector<TriangleMembrane::Corners> MeshSkinBuilder::storedTriangles() const {
+  std::vector<TriangleMembrane::Corners> triangles;
+  for (const auto& t : rig_.triangles)
+    triangles.push_back({storageOf_[t[0]], storageOf_[t[1]], storageOf_[t[2]]});
+  return triangles;
+}
+
+// The fat's volume is measured between where the rest posture puts the skin and its anchors.
+void MeshSkinBuilder::layFat(const VectorArray& skin, const VectorArray& anchors) {
+  std::vector<SolidId> solid;
+  for (const std::uint32_t p : order_) solid.push_back(covered_[p] ? solid_[p] : SolidId());
+  FatPressureModel model =
+      prepareFatPressure({def_.fat.bulk_Pa, storedTriangles(), skin, anchors,
+                          skin_.quantities_[SkinQuantity::fat], solid, skin_.points_});
+  if (!model.layers.empty())
+    skin_.fatPressure_ = std::make_shared<FatPressureModel>(std::move(model));
+}
+
+Skin::Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
+           const std::string& pointer, Diagnostics& diagnostics)
+    : settings_(settings) {
+  if (base.rig)
+    MeshSkinBuilder(*this, def, base, pointer, diagnostics).build();
+  else
+    GridSkinBuilder(*this, def, base, pointer, diagnostics).build();
+}
+
+}  // namespace fascia

@@ -1,0 +1,51 @@
+#include <fascia/skin/mesh/mesh_topology.h>
+
+#include <fascia/skin/mesh/mesh_kernels.h>
+
+namespace fascia {
+namespace {
+
+class MeshSurfaceStepper final : public SurfaceStepper {
+ public:
+  explicit MeshSurfaceStepper(const TriangleMembrane& membrane) : stepper_(membrane) {}
+
+  void forces(const VectorArray& position, VectorArray& force) override {
+    stepper_.forces(position, force);
+  }
+  void run(const StepInputs& inputs, int steps, VectorArray& position,
+           VectorArray& velocity) override {
+    stepper_.run(inputs, 0, steps, position, velocity);
+  }
+
+ private:
+  MeshStepper stepper_;
+};
+
+}  // namespace
+
+MeshTopology::MeshTopology(std::size_t pointCount, TriangleMembrane membrane, Drawn drawn)
+    : all_{0, pointCount}, membrane_(std::move(membrane)), drawn_(std::move(drawn)) {}
+
+std::unique_ptr<SurfaceStepper> MeshTopology::makeStepper() const {
+  return std::make_unique<MeshSurfaceStepper>(membrane_);
+}
+
+void MeshTopology::addForceJacobian(const VectorArray& position,
+                                    std::vector<Eigen::Triplet<double>>& entries) const {
+  membrane_.addForceJacobian(position, false, entries);
+}
+
+void MeshTopology::surface(const VectorArray& position, TriangleMesh& mesh) const {
+  const bool first = mesh.positions.size() != drawn_.points.size();
+  mesh.positions.resize(drawn_.points.size());
+  for (std::size_t v = 0; v < drawn_.points.size(); ++v) {
+    const std::size_t k = drawn_.points[v];
+    mesh.positions[v] = {position.x[k], position.y[k], position.z[k]};
+  }
+  if (first) {
+    mesh.triangles = drawn_.triangles;
+    mesh.uvs = drawn_.uvs;
+  }
+}
+
+}  // namespace fascia
