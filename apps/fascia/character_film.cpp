@@ -20,13 +20,14 @@ struct Footage {
 Footage simulateFootage(const std::string& input, SimulationOptions& options,
                         std::optional<double> only_s, const Console& console) {
   Character character = prepareCharacter(input, options, console);
-  RecordOptions record = options.recordOptions(character);
+  const int motion = chooseMotion(character, options.motion);
+  RecordOptions record = options.recordOptions();
   if (only_s)
     keepOnly(
         *only_s,
         record.frame_rate_hz > 0 ? record.frame_rate_hz : character.def().simulation.frame_rate_hz,
         record);
-  Recording recording = simulate(character, record, console);
+  Recording recording = simulate(character, motion, record, console);
   Texture texture = loadTexture(character.def());
   return {std::move(character), std::move(recording), std::move(texture)};
 }
