@@ -53,8 +53,9 @@ struct Renderer::Impl {
       Eigen::Matrix4f world = Eigen::Matrix4f::Identity();
       world.block<3, 3>(0, 0) = drawable.world.rotation.cast<float>();
       world.block<3, 1>(0, 3) = drawable.world.translation_m.cast<float>();
-      frame.items.push_back(
-          {&drawable, meshes[i].get(), textures.find(drawable.material.texture), world});
+      const bool ground = drawable.material.kind == Material::Kind::ground;
+      frame.items.push_back({&drawable, meshes[i].get(), textures.find(drawable.material.texture),
+                             world, ground || (frame.seenFromOutside && meshes[i]->closed())});
     }
     textures.dropUnused();
   }

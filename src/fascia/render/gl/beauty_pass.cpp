@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fascia/render/lookups.h>
+#include <fascia/render/mip_levels.h>
 #include <fascia/render/shaders/sources.h>
 
 namespace fascia::gl {
@@ -34,8 +35,8 @@ void setStudio(Program& program, const Frame& frame) {
   program.set("horizonColor", studio.horizon);
   program.set("floorColor", studio.floor);
   program.set("exposure", studio.exposure);
-  program.set("backgroundTop", frame.scene->background.top);
-  program.set("backgroundBottom", frame.scene->background.bottom);
+  program.set("backgroundTop", linearFromSrgb(frame.scene->background.top));
+  program.set("backgroundBottom", linearFromSrgb(frame.scene->background.bottom));
   program.set("vignette", frame.scene->background.vignette);
 }
 
@@ -51,9 +52,14 @@ void setMaterial(Program& program, const DrawItem& item) {
   program.set("textured", item.texture != 0 ? 1 : 0);
 }
 
-void repeatWithMipmaps(const Texture& texture) {
-  glBindTexture(GL_TEXTURE_2D, texture.id());
-  glGenerateMipmap(GL_TEXTURE_2D);
+void uploadNoise(const Texture& texture) {
+  const TextureFormat format{GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+  MipLevel mip{kNoiseSide, kNoiseSide, tileableNoise(kNoiseSide)};
+  allocateTexture(texture, kNoiseSide, kNoiseSide, format, GL_LINEAR, mip.texels.data());
+  for (int level = 1; mip.width > 1; ++level) {
+    mip = halved(mip.texels.data(), mip.width, mip.height, 1);
+    uploadLevel(texture, level, mip.width, mip.height, format, mip.texels.data());
+  }
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   for (GLenum which : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTexParameteri(GL_TEXTURE_2D, which, GL_REPEAT);
@@ -68,10 +74,7 @@ BeautyPass::BeautyPass()
   const auto lookup = scatterLookup(kLookupWidth, kLookupHeight);
   allocateTexture(scatterLookup_, kLookupWidth, kLookupHeight, {GL_RGB16F, GL_RGB, GL_FLOAT},
                   GL_LINEAR, lookup.data());
-  const auto noise = tileableNoise(kNoiseSide);
-  allocateTexture(noise_, kNoiseSide, kNoiseSide, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, GL_LINEAR,
-                  noise.data());
-  repeatWithMipmaps(noise_);
+  uploadNoise(noise_);
 }
 
 void BeautyPass::resize(int width, int height) {
@@ -150,7 +153,7 @@ void BeautyPass::drawOpaque(const Frame& frame, const OcclusionPass& occlusion,
   for (const auto kind : kinds)
     for (const DrawItem& item : frame.items) {
       if (item.seeThrough() || item.material().kind != kind) continue;
-      if (kind == Material::Kind::ground) glEnable(GL_CULL_FACE);  // no floor seen from below
+      if (item.culled) glEnable(GL_CULL_FACE);
       drawLit(frame, occlusion, item);
       glDisable(GL_CULL_FACE);
     }

@@ -24,6 +24,12 @@ float largestScatter(const Scene& scene) {
 
 }  // namespace
 
+void DrawItem::drawSeenSides() const {
+  if (culled) glEnable(GL_CULL_FACE);
+  mesh->draw();
+  glDisable(GL_CULL_FACE);
+}
+
 Frame prepareFrame(const Scene& scene, int width, int height) {
   Frame frame;
   frame.scene = &scene;
@@ -38,6 +44,10 @@ Frame prepareFrame(const Scene& scene, int width, int height) {
   // The floor reaches ten radii out and its near part may lie between the eye and the subject.
   const double near_m =
       camera.near_m > 0 ? camera.near_m : std::max(0.05 * reach_m, 0.01 * radius_m);
+  const double clearance_m = 2 * near_m;  // as far as the near plane's corners, and more
+  frame.seenFromOutside =
+      ((frame.subject.low - camera.eye_m).cwiseMax(camera.eye_m - frame.subject.high)).maxCoeff() >
+      clearance_m;
   const double far_m = camera.far_m > near_m ? camera.far_m : near_m + reach_m + 25 * radius_m;
   const double aspect = static_cast<double>(width) / height;
   frame.viewFromWorld = fascia::viewFromWorld(camera);

@@ -12,6 +12,7 @@ struct DrawItem {
   const GpuMesh* mesh;
   GLuint texture;  // 0 = none
   Eigen::Matrix4f worldFromObject;
+  bool culled;  // front faces hide its back faces, or it has none to be seen
 
   const Material& material() const { return drawable->material; }
   bool seeThrough() const { return material().opacity < 1; }
@@ -20,6 +21,7 @@ struct DrawItem {
     return material().kind != Material::Kind::ground &&
            !(material().kind == Material::Kind::skin && seeThrough());
   }
+  void drawSeenSides() const;
 };
 
 // One picture's scene, made ready for the passes.
@@ -28,6 +30,7 @@ struct Frame {
   int width = 0, height = 0;
   Box subject;  // everything but the ground
   float subjectRadius_m = 1;
+  bool seenFromOutside = true;  // or the camera may see solids from within
   Eigen::Matrix4f viewFromWorld, worldFromView, clipFromWorld;
   Eigen::Vector2f tanHalfFov;
   Eigen::Vector3f keyDirection, fillDirection, rimDirection;  // world, unit, towards the light

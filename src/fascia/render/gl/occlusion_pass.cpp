@@ -50,10 +50,8 @@ void OcclusionPass::drawGeometry(const Frame& frame) {
   for (const DrawItem& item : frame.items) {
     const bool ground = item.material().kind == Material::Kind::ground;
     if (!ground && !item.casts()) continue;
-    if (ground) glEnable(GL_CULL_FACE);
     geometryProgram_.set("worldFromObject", item.worldFromObject);
-    item.mesh->draw();
-    glDisable(GL_CULL_FACE);
+    item.drawSeenSides();
   }
 }
 

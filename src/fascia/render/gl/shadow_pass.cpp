@@ -64,7 +64,7 @@ void ShadowPass::draw(const Frame& frame) {
   for (const DrawItem& item : frame.items) {
     if (!item.casts()) continue;
     program_.set("worldFromObject", item.worldFromObject);
-    item.mesh->draw();
+    item.drawSeenSides();
   }
 }
 
