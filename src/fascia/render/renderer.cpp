@@ -1,6 +1,7 @@
 #include <fascia/render/renderer.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include <fascia/base/error.h>
@@ -10,6 +11,9 @@
 
 namespace fascia {
 namespace {
+
+constexpr int kShadowSide = 2048;  // texels; smaller: stairs in the shadows of thin limbs
+constexpr int kFastShadowSide = 1024;
 
 void requireDrawable(const Scene& scene, int width, int height) {
   const bool sized = width >= 1 && height >= 1 && width <= Renderer::kMaxSide &&
@@ -36,11 +40,15 @@ void requireDrawable(const Scene& scene, int width, int height) {
 struct Renderer::Impl {
   GlContext context;  // first: everything below needs it until it is gone
   gl::ShadowPass shadow;
-  gl::OcclusionPass occlusion;
+  std::optional<gl::OcclusionPass> occlusion;  // none in the fast look
   gl::BeautyPass beauty;
   gl::TextureCache textures;
   std::vector<std::unique_ptr<gl::GpuMesh>> meshes;  // by place in the scene
 
+  explicit Impl(Look look)
+      : shadow(look == Look::fast ? kFastShadowSide : kShadowSide), beauty(look) {
+    if (look == Look::full) occlusion.emplace();
+  }
   ~Impl() { context.makeCurrent(); }
 
   void uploadItems(const Scene& scene, gl::Frame& frame) {
@@ -61,7 +69,7 @@ struct Renderer::Impl {
   }
 };
 
-Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
+Renderer::Renderer(Look look) : impl_(std::make_unique<Impl>(look)) {}
 Renderer::~Renderer() = default;
 
 Pixels Renderer::render(const Scene& scene, int width, int height) {
@@ -76,8 +84,8 @@ void Renderer::render(const Scene& scene, int width, int height, Pixels& pixels)
   gl::Frame frame = gl::prepareFrame(scene, width, height);
   impl_->uploadItems(scene, frame);
   impl_->shadow.draw(frame);
-  impl_->occlusion.draw(frame, impl_->shadow);
-  impl_->beauty.draw(frame, impl_->occlusion);
+  if (impl_->occlusion) impl_->occlusion->draw(frame, impl_->shadow);
+  impl_->beauty.draw(frame, {impl_->shadow, impl_->occlusion ? &*impl_->occlusion : nullptr});
   impl_->beauty.read(pixels);
 }
 

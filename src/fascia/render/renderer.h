@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include <fascia/render/look.h>
 #include <fascia/render/pixels.h>
 #include <fascia/render/scene.h>
 
@@ -16,7 +17,8 @@ class Renderer {
   static constexpr int kMaxSide = 8192;
   static constexpr long long kMaxPixels = 34'000'000;  // 8K UHD; needs about 1.5 GB
 
-  Renderer();  // throws Error with what to install when there is no OpenGL
+  explicit Renderer(
+      Look look = Look::full);  // throws Error with what to install when there is no OpenGL
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <fascia/render/gl/gpu_mesh.h>
+#include <fascia/render/gl/screen_area.h>
 #include <fascia/render/scene.h>
 
 namespace fascia::gl {
@@ -24,6 +25,9 @@ struct DrawItem {
   void drawSeenSides() const;
 };
 
+// How far things darken what is next to them, of the subject's radius; larger: darker and vaguer.
+inline constexpr float kOcclusionRadius = 0.22f;
+
 // One picture's scene, made ready for the passes.
 struct Frame {
   const Scene* scene = nullptr;
@@ -35,6 +39,8 @@ struct Frame {
   Eigen::Vector2f tanHalfFov;
   Eigen::Vector3f keyDirection, fillDirection, rimDirection;  // world, unit, towards the light
   float thicknessScale_m = 0.1f;  // thickness that the occlusion pass resolves
+  ScreenBox subjectOnScreen;      // holds all but the ground
+  ScreenBox shadowedFloor;        // holds the ground that the subject darkens
   std::vector<DrawItem> items;
 };
 
