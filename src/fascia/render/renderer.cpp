@@ -1,6 +1,7 @@
 #include <fascia/render/renderer.h>
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <vector>
 
@@ -67,6 +68,21 @@ struct Renderer::Impl {
     }
     textures.dropUnused();
   }
+
+  // `run` runs a pass, and may note its time.
+  template <class Run>
+  PassTimes render(const Scene& scene, int width, int height, Pixels& pixels, const Run& run) {
+    requireDrawable(scene, width, height);
+    context.makeCurrent();
+    gl::Frame frame = gl::prepareFrame(scene, width, height);
+    PassTimes times;
+    run(times.upload_s, [&] { uploadItems(scene, frame); });
+    run(times.shadow_s, [&] { shadow.draw(frame); });
+    if (occlusion) run(times.occlusion_s, [&] { occlusion->draw(frame, shadow); });
+    run(times.beauty_s, [&] { beauty.draw(frame, {shadow, occlusion ? &*occlusion : nullptr}); });
+    run(times.read_s, [&] { beauty.read(pixels); });
+    return times;
+  }
 };
 
 Renderer::Renderer(Look look) : impl_(std::make_unique<Impl>(look)) {}
@@ -79,14 +95,18 @@ Pixels Renderer::render(const Scene& scene, int width, int height) {
 }
 
 void Renderer::render(const Scene& scene, int width, int height, Pixels& pixels) {
-  requireDrawable(scene, width, height);
-  impl_->context.makeCurrent();
-  gl::Frame frame = gl::prepareFrame(scene, width, height);
-  impl_->uploadItems(scene, frame);
-  impl_->shadow.draw(frame);
-  if (impl_->occlusion) impl_->occlusion->draw(frame, impl_->shadow);
-  impl_->beauty.draw(frame, {impl_->shadow, impl_->occlusion ? &*impl_->occlusion : nullptr});
-  impl_->beauty.read(pixels);
+  impl_->render(scene, width, height, pixels, [](double&, const auto& pass) { pass(); });
+}
+
+Renderer::PassTimes Renderer::renderMeasured(const Scene& scene, int width, int height,
+                                             Pixels& pixels) {
+  using Clock = std::chrono::steady_clock;
+  return impl_->render(scene, width, height, pixels, [](double& time_s, const auto& pass) {
+    const Clock::time_point begin = Clock::now();
+    pass();
+    glFinish();
+    time_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  });
 }
 
 std::string Renderer::description() const {

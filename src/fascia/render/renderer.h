@@ -28,6 +28,12 @@ class Renderer {
   // Reuses the memory of `pixels`: for video.
   void render(const Scene& scene, int width, int height, Pixels& pixels);
 
+  // Seconds that each pass of the last picture took. Costs a little: passes wait for one another.
+  struct PassTimes {
+    double upload_s = 0, shadow_s = 0, occlusion_s = 0, beauty_s = 0, read_s = 0;
+  };
+  PassTimes renderMeasured(const Scene& scene, int width, int height, Pixels& pixels);
+
   std::string description() const;  // of the driver
 
  private:
