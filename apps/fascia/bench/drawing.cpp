@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/parallel.h>
-#include <fascia/io/image.h>
+#include <fascia/io/picture/image.h>
 #include <fascia/render/renderer.h>
 
 #include "bench/benches.h"
