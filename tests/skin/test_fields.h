@@ -10,7 +10,7 @@
 namespace fascia::test {
 
 // Solids with a rigid motion each: the weakest thing a skin can rest on.
-class RigidSolids final : public Field {
+class RigidSolids : public Field {
  public:
   struct Part {
     Solid solid;

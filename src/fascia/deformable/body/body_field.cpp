@@ -5,11 +5,11 @@
 #include <string>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <fascia/base/error.h>
 #include <fascia/field/affine_kernels.h>
 #include <fascia/geometry/box_tree.h>
+#include <fascia/math/nearest_rotation.h>
 #include <fascia/math/points.h>
 
 namespace fascia {
@@ -28,14 +28,6 @@ struct VectorChunk {
 template <class V>
 V part(V v, std::size_t first, std::size_t count) {
   return {v.x + first, v.y + first, v.z + first, count};
-}
-
-// The rotation nearest to F (polar decomposition); a proper one for mirrored bodies too.
-Mat3 rotationOf(const Mat3& F) {
-  const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 U = svd.matrixU();
-  if ((U * svd.matrixV().transpose()).determinant() < 0) U.col(2) *= -1;
-  return U * svd.matrixV().transpose();
 }
 
 Vec3 corner(const Box& box, std::size_t c) {
@@ -83,7 +75,7 @@ void BodyField::update(std::span<const double> q, std::span<const double> v) {
 
 void BodyField::finish(const Part& part, Posed& posed) const {
   const BodyMap::Tangent& center = posed.map.center();
-  posed.frame = {rotationOf(center.gradient), center.x_m};
+  posed.frame = {nearestRotation(center.gradient), center.x_m};
   const Transform frameFromWorld = posed.frame.inverse();
   const Box box = part.surface->bounds_m();
   // Corners alone would not tell when only what is between them moves.

@@ -20,6 +20,10 @@ double powerNorm(double a, double b, double p) {
   return larger * std::pow(1 + std::pow(std::min(a, b) / larger, p), 1 / p);
 }
 
+Superquadric superquadricOf(std::span<const double> p) {
+  return {Vec3(p[0], p[1], p[2]), p[3], p[4]};
+}
+
 }  // namespace
 
 // Jaklič, Leonardis & Solina 2000, eq. 2.60: V = 2 a b c e1 e2 B(e1/2 + 1, e1) B(e2/2, e2/2).
@@ -70,6 +74,26 @@ TriangleMesh tessellate(const Superquadric& s, int detail) {
     const Vec3 ray = direction.cwiseProduct(s.half_m);
     return SurfacePoint{ray / gauge(s, ray), gaugeGradient(s, ray).normalized()};
   });
+}
+
+double SuperquadricShape::volume_m3(std::span<const double> p) const {
+  return fascia::volume_m3(superquadricOf(p));
+}
+
+Vec3 SuperquadricShape::halfExtents_m(std::span<const double> p) const {
+  return superquadricOf(p).half_m;
+}
+
+double SuperquadricShape::gauge(std::span<const double> p, const Vec3& x) const {
+  return fascia::gauge(superquadricOf(p), x);
+}
+
+TriangleMesh SuperquadricShape::tessellate(std::span<const double> p, int detail) const {
+  return fascia::tessellate(superquadricOf(p), detail);
+}
+
+PrimitiveKernel SuperquadricShape::kernel(std::span<const double> p) const {
+  return fascia::kernel(superquadricOf(p));
 }
 
 }  // namespace fascia

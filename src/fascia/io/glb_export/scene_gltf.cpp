@@ -3,29 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include <fascia/io/file/file.h>
 #include <fascia/io/glb_export/character_gltf.h>
 #include <fascia/io/glb_export/gltf_skin.h>
 #include <fascia/io/glb_export/gltf_tracks.h>
 #include <fascia/io/gltf/gltf_animation.h>
+#include <fascia/math/nearest_rotation.h>
 #include <fascia/skeleton/euler.h>
 
 namespace fascia {
 namespace {
 
 constexpr float kUnseen_m = 1e-6f;  // morph targets that move nothing farther are left out
-
-// The rotation nearest to a deformation gradient.
-Mat3 rotationOf(const Mat3& F) {
-  const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 turn = svd.matrixU() * svd.matrixV().transpose();
-  if (turn.determinant() > 0) return turn;
-  Mat3 mirrored = svd.matrixU();
-  mirrored.col(2) *= -1;
-  return mirrored * svd.matrixV().transpose();
-}
 
 // A body's motion taken apart: its rigid part, and for every frame the coordinates of what is left,
 //     x = Q (A p(X)) + t,   A = Qᵀ (R − t eᵀ),   eᵀ p = 1.
@@ -46,7 +35,7 @@ BodyMotion motionOf(const BodyShape& shape, BodyId id, const BodyModel& model,
   BodyMotion out;
   for (const StageRecording::Frame& frame : recording.frames) {
     const std::span<const double> q = model.part(id, std::span<const double>(frame.bodies));
-    const Mat3 turn = rotationOf(shape.deformationGradient(q, shape.center_m()));
+    const Mat3 turn = nearestRotation(shape.deformationGradient(q, shape.center_m()));
     const Vec3 shift = shape.point(q, shape.center_m()) - turn * shape.center_m();
     out.place.add({turn, shift});
     out.shapes.emplace_back(turn.topLeftCorner(d, d).transpose() *

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
+#include <fascia/skin/grid/attach.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/resample.h>
 
@@ -170,11 +172,15 @@ void GridSkinBuilder::makeRestShape(const EndRing& bottom, const EndRing& top) {
 }
 
 void GridSkinBuilder::placeCarriers() {
-  std::vector<TissueAnchors::Anchor> carriers;
-  forEachPoint(layout_, [&](int, int, std::size_t k) {
-    const Vec3 p = pointAt(skin_.rest_, k);
-    const SolidId solid = nearestFlesh(base_.posedFlesh, p).solid;
-    carriers.push_back({k, solid, base_.posedFlesh.materialFromWorld(solid, p)});
+  const std::vector<SolidId> solids = nearestSolids(base_.posedFlesh, layout_, skin_.rest_);
+  std::vector<TissueAnchors::Anchor> carriers(solids.size());
+  const auto columns = static_cast<std::size_t>(layout_.columns);
+  parallelFor(solids.size() / columns, [&](std::size_t row) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      const std::size_t p = row * columns + i, k = layout_.row(static_cast<int>(row)) + i;
+      carriers[p] = {k, solids[p],
+                     base_.posedFlesh.materialFromWorld(solids[p], pointAt(skin_.rest_, k))};
+    }
   });
   skin_.carriers_ = TissueAnchors(std::move(carriers));
 }
@@ -193,56 +199,47 @@ void GridSkinBuilder::setQuantities() {
   }
 }
 
-// "Attach all" (spec L14): every point to the nearest flesh along its inward normal, or to the
-// nearest flesh at all where the normal misses.
 void GridSkinBuilder::attach() {
-  VectorArray normals(layout_.storage());
-  gridNormals(layout_, skin_.rest_, 0, layout_.rows, normals);
   const bool saved = def_.points && !def_.points->anchor.empty() && sameGrid();
-  const bool natural =
-      !def_.tissue.rest_length_m && !(def_.points && !def_.points->tissue_rest_length.empty());
-  std::vector<TissueAnchors::Anchor> anchors;
-  FloatArray& restLength = skin_.quantities_[SkinQuantity::tissue_rest_length];
-  for (int j = 1; j + 1 < layout_.rows; ++j) {
+  std::vector<Attachment> found;
+  if (!saved) {
+    VectorArray normals(layout_.storage());
+    gridNormals(layout_, skin_.rest_, 0, layout_.rows, normals);
+    found =
+        attachAlongNormals(base_.posedFlesh, layout_, skin_.rest_, normals, def_.fat.thickness_m);
+  }
+  std::vector<TissueAnchors::Anchor> anchors(layout_.pointCount());
+  parallelFor(static_cast<std::size_t>(layout_.rows - 2), [&](std::size_t row) {
+    const int j = static_cast<int>(row) + 1;
     for (int i = 0; i < layout_.columns; ++i) {
-      const std::size_t k = layout_.at(i, j);
-      TissueAnchors::Anchor anchor{k, SolidId(), Vec3::Zero()};
+      const auto p = static_cast<std::size_t>(j * layout_.columns + i);
+      TissueAnchors::Anchor& anchor = anchors[p];
+      anchor.point = layout_.at(i, j);
       if (saved) {
-        const auto p = static_cast<std::size_t>(j * layout_.columns + i);
         anchor.solid = SolidId(def_.points->anchor_solid[p]);
         const auto& m = def_.points->anchor[p];
         anchor.material = Vec3(m[0], m[1], m[2]);
       } else {
-        const Vec3 hit = alongNormal(pointAt(skin_.rest_, k), pointAt(normals, k), anchor.solid);
-        anchor.material = base_.posedFlesh.materialFromWorld(anchor.solid, hit);
+        anchor.solid = found[p].solid;
+        anchor.material = base_.posedFlesh.materialFromWorld(anchor.solid, found[p].place_m);
       }
       overrideAnchor(i, j, anchor);
-      if (!anchor.solid.valid()) continue;
-      if (natural) {
-        const Vec3 inner = base_.posedFlesh.worldFromMaterial(anchor.solid, anchor.material);
-        restLength[k] = static_cast<float>((pointAt(skin_.rest_, k) - inner).norm());
-      }
-      anchors.push_back(anchor);
     }
-  }
+  });
+  std::erase_if(anchors, [](const TissueAnchors::Anchor& a) { return !a.solid.valid(); });
+  if (!def_.tissue.rest_length_m && !(def_.points && !def_.points->tissue_rest_length.empty()))
+    measureStrands(anchors);
   skin_.anchors_ = TissueAnchors(std::move(anchors));
 }
 
-Vec3 GridSkinBuilder::alongNormal(const Vec3& from, const Vec3& normal, SolidId& solid) const {
-  const NearestFlesh start = nearestFlesh(base_.posedFlesh, from);
-  constexpr double kTouch_m = 1e-4;
-  constexpr int kSteps = 64;
-  // A strand much longer than the shortest one would cross the body.
-  const double reach = 4 * std::max<double>(start.distance, kTouch_m) + def_.fat.thickness_m;
-  double t = 0;
-  for (int step = 0; step < kSteps && t <= reach; ++step) {
-    const NearestFlesh here = nearestFlesh(base_.posedFlesh, from - t * normal);
-    solid = here.solid;
-    if (here.distance < kTouch_m) return from - t * normal - here.distance * here.normal;
-    t += here.distance;
-  }
-  solid = start.solid;
-  return from - start.distance * start.normal;
+// The length at attachment is the one at rest.
+void GridSkinBuilder::measureStrands(std::span<const TissueAnchors::Anchor> anchors) {
+  FloatArray& restLength = skin_.quantities_[SkinQuantity::tissue_rest_length];
+  parallelFor(anchors.size(), [&](std::size_t n) {
+    const TissueAnchors::Anchor& a = anchors[n];
+    const Vec3 inner = base_.posedFlesh.worldFromMaterial(a.solid, a.material);
+    restLength[a.point] = static_cast<float>((pointAt(skin_.rest_, a.point) - inner).norm());
+  });
 }
 
 void GridSkinBuilder::overrideAnchor(int i, int j, TissueAnchors::Anchor& anchor) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include <fascia/skin/grid/wrap.h>
@@ -26,7 +27,7 @@ class GridSkinBuilder {
   void placeCarriers();
   void setQuantities();
   void attach();
-  Vec3 alongNormal(const Vec3& from, const Vec3& normal, SolidId& solid) const;
+  void measureStrands(std::span<const TissueAnchors::Anchor> anchors);
   void overrideAnchor(int i, int j, TissueAnchors::Anchor& anchor) const;
   void applyEdits();
   void makeModel();

@@ -7,6 +7,7 @@
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/grid/elastic_grid.h>
+#include <fascia/skin/grid/nearest_solids.h>
 #include <fascia/skin/grid/resample.h>
 
 namespace fascia {
@@ -18,6 +19,8 @@ namespace {
 constexpr double kAlong = 0.8, kAround = 0.2;
 constexpr int kCoarsest = 16;  // rows of the level that starts from the sphere
 constexpr int kFirstIterations = 600, kIterations = 120;
+constexpr std::size_t kBlocksOfTask = 8;  // fewer cost more to hand out than to do
+constexpr double kReachOfField = 0.01;    // see NearestSolids
 
 Vec3 towardsFront(const Vec3& upAxis) {
   // The front is +z; a tube lying along z has its front on top.
@@ -25,74 +28,76 @@ Vec3 towardsFront(const Vec3& upAxis) {
   return (forward - forward.dot(upAxis) * upAxis).normalized();
 }
 
-// Distance to the flesh and its gradient, over all solids, for a row of points.
-class FleshDistance {
- public:
-  FleshDistance(const Field& field, int columns)
-      : field_(field),
-        normal_(static_cast<std::size_t>(columns)),
-        d_(normal_.size()),
-        nearest_(normal_.size()),
-        gradient_(normal_.size()) {}
-
-  void measure(ConstVectors row) {
-    std::fill(nearest_.begin(), nearest_.end(), 1e30f);
-    for (std::size_t s = 0; s < field_.solidCount(); ++s) {
-      field_.evaluate(SolidId(std::int64_t(s)), row, d_.data(), view(normal_, 0, row.count));
-      for (std::size_t i = 0; i < row.count; ++i) {
-        if (d_[i] >= nearest_[i]) continue;
-        nearest_[i] = d_[i];
-        gradient_.x[i] = normal_.x[i];
-        gradient_.y[i] = normal_.y[i];
-        gradient_.z[i] = normal_.z[i];
-      }
-    }
-  }
-  float distance(std::size_t i) const { return nearest_[i]; }
-  const VectorArray& gradient() const { return gradient_; }
-
- private:
-  const Field& field_;
-  VectorArray normal_;
-  std::vector<float> d_, nearest_;
-  VectorArray gradient_;
+// Rows of a grid in pieces that lie together, each with what it knows of the solids near it.
+struct WrapBlock {
+  std::size_t first, count;  // storage indices
+  NearestSolids flesh;
 };
 
-// One Jacobi sweep: each point moves towards its neighbours' mean and, when `cling` > 0, towards
-// the flesh; then out of the flesh to the distance of the fat.
-void relaxRow(const Field& field, const GridLayout& g, const WrapOptions& options, double cling,
-              int j, const VectorArray& from, VectorArray& to) {
-  FleshDistance flesh(field, g.columns);
-  const auto tension = [&](const FloatArray& a, FloatArray& out) {
-    for (int i = 0; i < g.columns; ++i) {
-      const std::size_t k = g.at(i, j);
-      out[k] = static_cast<float>(0.5 * kAlong * (a[g.at(i, j - 1)] + a[g.at(i, j + 1)]) +
-                                  0.5 * kAround * (a[k - 1] + a[k + 1]));
-    }
-  };
-  tension(from.x, to.x), tension(from.y, to.y), tension(from.z, to.z);
+Box boundsOf(const Field& field) {
+  Box box;
+  for (std::size_t s = 0; s < field.solidCount(); ++s)
+    box.add(field.bounds(SolidId(std::int64_t(s))));
+  return box;
+}
+
+// Of the rows between the ends.
+std::vector<WrapBlock> blocksOf(const Field& field, const GridLayout& g) {
+  const double reach_m = kReachOfField * boundsOf(field).size().norm();
+  std::vector<WrapBlock> blocks;
   const auto columns = static_cast<std::size_t>(g.columns);
-  // Twice: leaving one solid may enter its neighbour.
-  for (int pass = 0; pass < 2; ++pass) {
-    flesh.measure(view(static_cast<const VectorArray&>(to), g.row(j), columns));
-    for (std::size_t i = 0; i < columns; ++i) {
-      const double gap = flesh.distance(i) - options.fat_m;
-      const double move = gap < 0 ? -gap : pass == 0 ? -cling * gap : 0;
-      const std::size_t k = g.row(j) + i;
-      to.x[k] += static_cast<float>(move * flesh.gradient().x[i]);
-      to.y[k] += static_cast<float>(move * flesh.gradient().y[i]);
-      to.z[k] += static_cast<float>(move * flesh.gradient().z[i]);
-    }
+  for (int j = 1; j + 1 < g.rows; ++j)
+    for (std::size_t i = 0; i < columns; i += NearestSolids::kBlock)
+      blocks.push_back({g.row(j) + i, std::min(NearestSolids::kBlock, columns - i),
+                        NearestSolids(field, reach_m)});
+  return blocks;
+}
+
+// Each point moves towards the mean of its neighbours.
+void tighten(const GridLayout& g, const WrapBlock& block, const VectorArray& from,
+             VectorArray& to) {
+  for (const auto axis : VectorArray::kAxes) {
+    const float* here = (from.*axis).data() + block.first;
+    const float *below = here - g.stride(), *above = here + g.stride();
+    const float *before = here - 1, *after = here + 1;
+    float* out = (to.*axis).data() + block.first;
+    for (std::size_t i = 0; i < block.count; ++i)
+      out[i] = static_cast<float>(0.5 * kAlong * (below[i] + above[i]) +
+                                  0.5 * kAround * (before[i] + after[i]));
   }
 }
 
-void relax(const Field& field, const GridLayout& g, const WrapOptions& options, double cling,
-           int iterations, VectorArray& r) {
+// Out of the flesh to the distance of the fat; from outside by the share `cling` of the way there.
+// Returns whether any point was inside.
+bool rest(double fat_m, double cling, WrapBlock& block, VectorArray& r) {
+  block.flesh.measure(view(static_cast<const VectorArray&>(r), block.first, block.count));
+  const ConstVectors normals = block.flesh.normals();
+  const Vectors out = view(r, block.first, block.count);
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const double gap = block.flesh.distance_m(i) - fat_m;
+    const double move = (gap < 0 ? -1 : -cling) * gap;
+    out.x[i] += static_cast<float>(move * normals.x[i]);
+    out.y[i] += static_cast<float>(move * normals.y[i]);
+    out.z[i] += static_cast<float>(move * normals.z[i]);
+  }
+  return block.flesh.anyNearer(fat_m);
+}
+
+// Jacobi sweeps: towards the neighbours, towards the flesh, out of it.
+void relax(const GridLayout& g, const WrapOptions& options, double cling, int iterations,
+           std::vector<WrapBlock>& blocks, VectorArray& r) {
   VectorArray next = r;
+  const std::size_t tasks = (blocks.size() + kBlocksOfTask - 1) / kBlocksOfTask;
+  const auto sweep = [&](std::size_t task) {
+    const std::size_t end = std::min(blocks.size(), (task + 1) * kBlocksOfTask);
+    for (std::size_t b = task * kBlocksOfTask; b < end; ++b) {
+      tighten(g, blocks[b], r, next);
+      // Leaving one solid may enter its neighbour.
+      if (rest(options.fat_m, cling, blocks[b], next)) rest(options.fat_m, 0, blocks[b], next);
+    }
+  };
   for (int n = 0; n < iterations; ++n) {
-    parallelFor(static_cast<std::size_t>(g.rows - 2), [&](std::size_t row) {
-      relaxRow(field, g, options, cling, static_cast<int>(row) + 1, r, next);
-    });
+    parallelFor(tasks, sweep);
     fillPads(g, next);
     std::swap(r, next);
   }
@@ -117,9 +122,7 @@ double clingRate(const GridLayout& g, const WrapOptions& options) {
 }
 
 VectorArray sphereAround(const Field& field, const GridLayout& g, const Vec3& upAxis) {
-  Box box;
-  for (std::size_t s = 0; s < field.solidCount(); ++s)
-    box.add(field.bounds(SolidId(std::int64_t(s))));
+  const Box box = boundsOf(field);
   const double radius = 0.55 * box.size().norm();
   const Vec3 front = towardsFront(upAxis), side = upAxis.cross(front);
   VectorArray r(g.storage());
@@ -146,33 +149,34 @@ Vec3 ringPoint(const EndRing& ring, const Vec3& upAxis, double u) {
 }
 
 Vec3 exitPoint(const Field& field, const Vec3& origin, const Vec3& axis, double clearance_m) {
-  Box box;
+  Box box = boundsOf(field);
   box.add(origin);
-  for (std::size_t s = 0; s < field.solidCount(); ++s)
-    box.add(field.bounds(SolidId(std::int64_t(s))));
   const double reach = box.size().norm();
-  FleshDistance flesh(field, 1);
-  const auto distance = [&](double t) {
-    const Vec3 p = origin + t * axis;
-    const float x[3] = {static_cast<float>(p.x()), static_cast<float>(p.y()),
-                        static_cast<float>(p.z())};
-    flesh.measure({&x[0], &x[1], &x[2], 1});
-    return double{flesh.distance(0)};
+  NearestSolids flesh(field, kReachOfField * reach);
+  VectorArray at(NearestSolids::kBlock);
+  // How far apart the samples i, i + 1, … of the ray are from the flesh.
+  const auto measure = [&](double t, double step, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+      setPoint(at, i, origin + (t + static_cast<double>(i) * step) * axis);
+    flesh.measure(view(static_cast<const VectorArray&>(at), 0, count));
   };
   // March inwards from outside of everything until the clearance is used up, then bisect.
-  constexpr int kSamples = 2000;
+  constexpr int kSamples = 2048, kBlock = NearestSolids::kBlock;
+  const double step = reach / kSamples;
   double low = 0, high = reach;
-  for (int i = kSamples - 1; i > 0; --i) {
-    const double t = reach * i / kSamples;
-    if (distance(t) < clearance_m) {
-      low = t;
-      break;
+  for (int first = kSamples - kBlock; first >= 0 && low == 0; first -= kBlock) {
+    measure(first * step, step, NearestSolids::kBlock);
+    for (int i = kBlock - 1; i >= 0 && low == 0; --i) {
+      if (flesh.distance_m(static_cast<std::size_t>(i)) < clearance_m)
+        low = (first + i) * step;
+      else
+        high = (first + i) * step;
     }
-    high = t;
   }
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
-    (distance(middle) < clearance_m ? low : high) = middle;
+    measure(middle, 0, 1);
+    (flesh.distance_m(0) < clearance_m ? low : high) = middle;
   }
   return origin + high * axis;
 }
@@ -195,8 +199,9 @@ VectorArray shrinkWrap(const Field& field, const GridLayout& layout, const EndRi
     if (!coarsest) r = resample(levels[n + 1], r, levels[n]);
     setEnds(levels[n], bottom, top, upAxis, r);
     // Shrink first, cling then: clinging from afar would pull rows to whatever is nearest.
-    if (coarsest) relax(field, levels[n], options, 0, kFirstIterations, r);
-    relax(field, levels[n], options, clingRate(levels[n], options), kIterations, r);
+    std::vector<WrapBlock> blocks = blocksOf(field, levels[n]);
+    if (coarsest) relax(levels[n], options, 0, kFirstIterations, blocks, r);
+    relax(levels[n], options, clingRate(levels[n], options), kIterations, blocks, r);
   }
   return r;
 }
