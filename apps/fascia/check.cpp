@@ -13,30 +13,35 @@ namespace fascia {
 namespace {
 
 constexpr const char* kCheckFooter =
-    R"(Every fault is listed, a line each, with file, line and the place in the document.
+    R"(Every fault is listed, a line each, with file, line and the place in the document. So is every setting
+that has no effect in its file, as a warning: warnings do not fail the check.
 
 Examples:
   fascia check examples/penguin.fascia.json
   fascia check examples/sky-hook.fascia.json
   fascia check --json mine.fascia.json yours.fascia.json)";
 
-// Builds what the file holds; a scene is started too: its script is read then.
-void checkFile(const std::string& path) {
-  if (!isSceneFile(path)) {
-    loadCharacter(path);
-    return;
-  }
+// Builds what the file holds; a scene is started too: its script is read then. Returns what it is
+// warned of.
+std::vector<Issue> checkFile(const std::string& path) {
+  if (!isSceneFile(path)) return loadCharacter(path).warnings();
   const Stage stage = loadStage(path);
   if (!stage.def().view.camera.empty()) parseCamera(stage.def().view.camera);
   const Performance performance(stage);
+  return stage.warnings();
+}
+
+std::string verdict(std::size_t warnings) {
+  return warnings == 0 ? "ok" : fmt::format("ok, {} warning{}", warnings, warnings > 1 ? "s" : "");
 }
 
 void check(const std::vector<std::string>& paths, const Console& console) {
   std::vector<Issue> issues;
   for (const std::string& path : paths) {
     try {
-      checkFile(path);
-      console.say(path + ": ok");
+      const std::vector<Issue> warnings = checkFile(path);
+      console.warn(warnings);
+      console.say(path + ": " + verdict(warnings.size()));
     } catch (const Error& error) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());
     }
