@@ -6,6 +6,7 @@
 
 #include <Eigen/SVD>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -126,6 +127,7 @@ HelperSeed seedAt(const SkinningProblem& problem, std::span<const PointWeights> 
 }  // namespace
 
 void RigidFit::add(const Vec3& p, double share, const Vec3& target) {
+  FASCIA_ASSERT(share >= 0 && p.allFinite() && target.allFinite(), "a point has a share in a bone");
   const Vec3 from = p - origin_m_;
   const double s2 = share * share;
   mass_ += s2;
