@@ -3,7 +3,6 @@
 #include <string>
 
 #include <fascia/base/random.h>
-#include <fascia/field/hierarchy.h>
 #include <fascia/field/solid.h>
 
 namespace fascia {
@@ -51,21 +50,6 @@ BENCHMARK_CAPTURE(evaluateSolid, taperedSphere, SolidDef{"sphere", {0.1}, {{"tap
 BENCHMARK_CAPTURE(evaluateSolid, twistedSphere, SolidDef{"sphere", {0.1}, {{"twist", {0.7}}}})
     ->Arg(64);
 BENCHMARK_CAPTURE(evaluateSolid, bentSphere, SolidDef{"sphere", {0.1}, {{"bend", {0.9}}}})->Arg(64);
-
-void querySolidHierarchy(benchmark::State& state) {
-  Random random(3);
-  std::vector<Box> boxes(40);
-  for (Box& box : boxes) {
-    const Vec3 center(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    box = {center - Vec3::Constant(0.1), center + Vec3::Constant(0.1)};
-  }
-  SolidHierarchy hierarchy;
-  hierarchy.build(boxes);
-  std::vector<SolidId> found(boxes.size());
-  const Box block{Vec3(0, 0, 0), Vec3(0.1, 0.1, 0.1)};
-  for (auto _ : state) benchmark::DoNotOptimize(hierarchy.query(block, 0.02, found));
-}
-BENCHMARK(querySolidHierarchy);
 
 }  // namespace
 }  // namespace fascia

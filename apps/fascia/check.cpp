@@ -19,7 +19,8 @@ namespace fascia {
 namespace {
 
 constexpr const char* kCheckFooter =
-    R"(Every fault is listed, a line each, with file, line and the place in the document.
+    R"(Every fault is listed, a line each, with file, line and the place in the document. So is every setting
+that has no effect in its file, as a warning: warnings do not fail the check.
 
 Examples:
   fascia check examples/penguin.fascia.json
@@ -33,17 +34,26 @@ std::string renderCommand(const std::string& path, const std::string& motion, bo
   return "fascia render " + shellWord(path) + motionOption(motion) + " -o " + shellWord(name);
 }
 
-// Builds what the file holds; a scene is started too: its script is read then. Returns the command
-// that shows it.
-std::string checkFile(const std::string& path) {
+struct Verdict {
+  std::vector<Issue> warnings;
+  std::string next;  // the command that shows what was checked
+};
+
+// Builds what the file holds; a scene is started too: its script is read then.
+Verdict checkFile(const std::string& path) {
   if (!isSceneFile(path)) {
-    const std::string motion = livelyMotion(loadCharacter(path));
-    return renderCommand(path, motion, !motion.empty());
+    const Character character = loadCharacter(path);
+    const std::string motion = livelyMotion(character);
+    return {character.warnings(), renderCommand(path, motion, !motion.empty())};
   }
   const Stage stage = loadStage(path);
   if (!stage.def().view.camera.empty()) parseCamera(stage.def().view.camera);
   const Performance performance(stage);
-  return renderCommand(path, {}, true);
+  return {stage.warnings(), renderCommand(path, {}, true)};
+}
+
+std::string shown(std::size_t warnings) {
+  return warnings == 0 ? "ok" : fmt::format("ok, {} warning{}", warnings, warnings > 1 ? "s" : "");
 }
 
 void check(const std::vector<std::string>& paths, const Console& console) {
@@ -51,9 +61,12 @@ void check(const std::vector<std::string>& paths, const Console& console) {
   std::string next;
   for (const std::string& path : paths) {
     try {
+      Verdict verdict;
       withInput(path, {.command = "check", .character = true, .scene = true},
-                [&] { next = checkFile(path); });
-      console.say(path + ": ok");
+                [&] { verdict = checkFile(path); });
+      console.warn(verdict.warnings);
+      console.say(path + ": " + shown(verdict.warnings.size()));
+      next = verdict.next;
     } catch (const Error& error) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());
     }

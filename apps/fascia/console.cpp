@@ -1,5 +1,7 @@
 #include "console.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
@@ -26,7 +28,17 @@ void Console::hint(const std::string& line) const {
   if (!quiet_) fmt::print(stderr, "{}\n", line);
 }
 
-void Console::answer(const Json& document) const {
+void Console::warn(const std::vector<Issue>& warnings) const {
+  for (const Issue& warning : warnings) {
+    const auto same = [&](const Issue& known) { return known.text() == warning.text(); };
+    if (std::ranges::any_of(warnings_, same)) continue;
+    hint("warning: " + warning.text());
+    warnings_.push_back(warning);
+  }
+}
+
+void Console::answer(Json document) const {
+  document.set("warnings", toJson(warnings_));
   if (json_) fmt::print("{}", printJson(document));
   answered_ = true;
 }

@@ -22,7 +22,10 @@ class Console {
   void say(const std::string& line) const;     // stdout; not with --json or --quiet
   void detail(const std::string& text) const;  // stdout; only with --verbose
   void hint(const std::string& line) const;    // stderr; not with --quiet
-  void answer(const Json& document) const;     // stdout; only with --json
+  // What a person should know though it does not stop anything: each a line on stderr, once, not
+  // with --quiet; and all of them in the answer.
+  void warn(const std::vector<Issue>& warnings) const;
+  void answer(Json document) const;  // stdout; only with --json; with all warnings
   // Every issue a line on stderr; with --json the answer, unless one was given.
   void fail(const Error& error) const;
 
@@ -32,6 +35,7 @@ class Console {
  private:
   bool json_ = false;
   mutable bool answered_ = false;
+  mutable std::vector<Issue> warnings_;
   bool quiet_ = false;
   bool verbose_ = false;
 };

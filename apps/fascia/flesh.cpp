@@ -26,13 +26,14 @@
 namespace fascia {
 namespace {
 
-// Skin for an imported figure: its pose function. The material and tissue are what a simulated
-// membrane on top of it would want: held closely, and evening out what joints fold over a few
-// hundredths of the figure's size.
+// Skin for an imported figure: its pose function. A simulated membrane on top of it is held
+// closely, and evens out what joints fold over a few hundredths of the figure's size.
 SkinDef skinFor(const RiggedModel& model, const SkinPoseDef& dials) {
   const double size = model.size_m();
   SkinDef skin;
   skin.pose = dials;
+  skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
+  if (!dials.simulate) return skin;
   skin.tissue.stiffness_N_per_m3 = 20000;
   skin.tissue.damping_Ns_per_m3 = 300;
   skin.tissue.carry = 0.75;
@@ -42,7 +43,6 @@ SkinDef skinFor(const RiggedModel& model, const SkinPoseDef& dials) {
   skin.material.stretch_u_N_per_m = skin.material.stretch_v_N_per_m = stretch;
   skin.material.shear_N_per_m = 0.5 * stretch;
   skin.material.prestretch = 1;
-  skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
   return skin;
 }
 
@@ -255,6 +255,8 @@ void addFlesh(CLI::App& program, Console& console) {
   dial("--muscle", options->dials.muscle, "Muscles that swell in a bend: 0 none, 1 bodybuilder");
   dial("--volume", options->dials.volume, "Share of what a bend takes that comes out around it");
   dial("--tightness", options->dials.tightness, "How far the skin evens out: 0 slack, 1 taut");
+  command.add_flag("--simulate", options->dials.simulate,
+                   "Put a simulated elastic skin on top, of a material that suits the mesh");
   command.add_option("--report", options->report, "Write the table to this JSON file")
       ->type_name("FILE");
   command

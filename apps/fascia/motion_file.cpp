@@ -4,14 +4,12 @@
 
 #include <fmt/format.h>
 
-#include <fascia/io/file/file.h>
 #include <fascia/io/motion/bvh.h>
+#include <fascia/io/motion/joint_map_file.h>
 #include <fascia/rig/retarget.h>
 
 namespace fascia {
 namespace {
-
-constexpr std::size_t kMaxMapBytes = 1u << 20;
 
 bool endsWithAnyCase(std::string_view text, std::string_view ending) {
   if (text.size() < ending.size()) return false;
@@ -29,7 +27,7 @@ bool isMotionFile(std::string_view motion) {
 MotionFile readMotionFile(const std::string& path, const RiggedModel& rig,
                           const std::string& joint_map) {
   JointMap given;
-  if (!joint_map.empty()) given = parseJointMap(readFile(joint_map, kMaxMapBytes), joint_map);
+  if (!joint_map.empty()) given = readJointMap(joint_map);
   const BvhMotion motion = readBvh(path);
   MotionFile file;
   file.notes = motion.notes;

@@ -40,7 +40,7 @@ void writeOutput(const Stage& stage, const StageRecording& recording, const std:
 }  // namespace
 
 void bakeScene(const SceneBake& bake, const Console& console) {
-  const Stage stage = prepareStage(bake.scene, bake.simulation);
+  const Stage stage = prepareStage(bake.scene, bake.simulation, console);
   checkOverwriting(inputsOf(bake, stage.def()), bake.outputs, bake.stats);
   const StageRecording recording = perform(stage, stageRecordOptions(bake.simulation), console);
   for (const std::string& path : bake.outputs) {

@@ -9,7 +9,6 @@
 
 #include <fascia/base/suggest.h>
 #include <fascia/io/documents/character_file.h>
-#include <fascia/math/ode/integrators.h>
 
 #include "input_kind.h"
 #include "interrupt.h"
@@ -19,13 +18,14 @@
 namespace fascia {
 namespace {
 
-constexpr int kMinGrid = 8, kMaxGrid = 4096;  // as in SkinDef
-
-// The skin's own two, and every method of the solver library.
 std::vector<std::string> integratorNames() {
-  std::vector<std::string> names = {"auto", "leapfrog"};
-  for (const IntegratorInfo& info : integrators()) names.emplace_back(info.name);
-  return names;
+  const std::vector<std::string_view> names = skinIntegrators();
+  return {names.begin(), names.end()};
+}
+
+std::string gridProblem(const std::string& text) {
+  return sizeProblem(text, static_cast<int>(kGridSide.range.min),
+                     static_cast<int>(kGridSide.range.max));
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ void SimulationOptions::addTo(CLI::App& command) {
       ->check(numberIn(1e-3, 86400));
   command.add_option("--grid", grid, "Skin points around x along, such as 64x16")
       ->type_name("MxN")
-      ->check([](const std::string& text) { return sizeProblem(text, kMinGrid, kMaxGrid); });
+      ->check(gridProblem);
   command
       .add_option(
           "--integrator", integrator,
@@ -58,7 +58,7 @@ void SimulationOptions::addTo(CLI::App& command) {
       ->check(CLI::IsMember(integratorNames()).description(""));
   command.add_option("--step", step_s, "Time step; 0 = chosen (default: as in the file)")
       ->type_name("SECONDS")
-      ->check(numberIn(0, 1.0 / 12));
+      ->check(numberIn(0, kLongestFrame_s));
   command.add_option("--seed", seed, "Of a scene: another start, within what its file allows")
       ->type_name("N")
       ->check(numberIn(0, 1e15));
@@ -118,7 +118,9 @@ Character prepareCharacter(CharacterFile file, SimulationOptions& options, const
     options.motion = model.motions.back().name;
     file.def.rig->model = std::make_shared<const RiggedModel>(std::move(model));
   }
-  return buildCharacter(file, options.buildOptions());
+  Character character = buildCharacter(file, options.buildOptions());
+  console.warn(character.warnings());
+  return character;
 }
 
 int chooseMotion(const Character& character, const std::string& name) {

@@ -18,7 +18,7 @@ constexpr std::size_t kReachMoments = 120;
 
 SceneCache performScene(const std::string& input, const SimulationOptions& options,
                         std::optional<double> only_s, const Console& console) {
-  Stage stage = prepareStage(input, options);
+  Stage stage = prepareStage(input, options, console);
   StageRecordOptions record = stageRecordOptions(options);
   // Without a box to be seen the camera shows all that moves in the course of the performance.
   const ViewDef& view = stage.def().view;

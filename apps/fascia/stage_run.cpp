@@ -10,10 +10,13 @@
 
 namespace fascia {
 
-Stage prepareStage(const std::string& path, const SimulationOptions& options) {
+Stage prepareStage(const std::string& path, const SimulationOptions& options,
+                   const Console& console) {
   if (!options.motion.empty() || !options.joint_map.empty())
     throw Error("--motion and --joint-map are for characters; those of a scene move as it says");
-  return loadStage(path, options.buildOptions());
+  Stage stage = loadStage(path, options.buildOptions());
+  console.warn(stage.warnings());
+  return stage;
 }
 
 StageRecordOptions stageRecordOptions(const SimulationOptions& options) {

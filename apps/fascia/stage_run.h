@@ -11,7 +11,8 @@
 namespace fascia {
 
 // Reads and builds a scene for these options. Throws Error for options that scenes have no use for.
-Stage prepareStage(const std::string& path, const SimulationOptions& options);
+Stage prepareStage(const std::string& path, const SimulationOptions& options,
+                   const Console& console);
 StageRecordOptions stageRecordOptions(const SimulationOptions& options);
 
 // Performs with a progress bar. Throws Interrupted on Ctrl-C.

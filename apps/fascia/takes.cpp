@@ -220,6 +220,7 @@ Cast prepareCast(const std::string& path, const TakeOptions& takes, SimulationOp
   }
   doubles.putInto(file.def);
   Cast cast{def, buildCharacter(file, options.buildOptions()), std::move(list), std::move(inputs)};
+  console.warn(cast.character.warnings());
   for (std::size_t k = 0; k < cast.takes.size(); ++k) {
     cast.takes[k].index = chooseMotion(cast.character, names[k]);
     cast.takes[k].played = chooseMotion(cast.character, played[k]);

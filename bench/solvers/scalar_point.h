@@ -40,7 +40,7 @@ struct Cell {
 inline constexpr float kAlpha[4] = {-0.5f, 0.5f, -0.5f, 0.5f};
 inline constexpr float kBeta[4] = {-0.5f, -0.5f, 0.5f, 0.5f};
 
-// A tissue strand (spec L5) at one moment.
+// A tissue strand (Turner & Gobbetti 1998, eq. 3) at one moment.
 struct Strand {
   Vec3f direction = Vec3f::Zero();  // from the anchor, unit
   float length = 0, extension = 0;  // m; extension > 0: taut
@@ -56,7 +56,8 @@ inline Strand strandAt(const PointModel& points, const PointSurroundings& around
   return s;
 }
 
-// The half space of the flesh at a point (spec L10): how far inside, as a vector out of it.
+// The half space of the flesh at a point (Turner & Gobbetti 1998, eq. 13): how far inside, as a
+// vector out of it.
 inline Vec3f wayOut(const PointSurroundings& around, std::size_t k, float time_s,
                     const Vec3f& position) {
   const Vec3f n = at(around.normal, k);

@@ -117,7 +117,7 @@ TEST(Character, DividesLongFrames) {
   EXPECT_LE(stats.step_max_s, 1.0 / 12);
 }
 
-// Spec L18: at any moment, up and down, and on.
+// At any moment, up and down, and on (Turner & Gobbetti 1998, §6.5).
 TEST(Resolution, CanChangeAtAnyMomentOfARun) {
   CharacterDef def = test::smallCharacter();
   const Character coarse(def);

@@ -110,6 +110,29 @@ TEST_F(Cli, CheckTellsMachinesTheSame) {
   }
 }
 
+// Settings without effect, and keys that are never met, are told once and counted.
+TEST_F(Cli, CheckAndBakeWarnOfWhatHasNoEffect) {
+  nlohmann::json file = nlohmann::json::parse(content("ball.fascia.json"));
+  file["skin"]["fat"] = {{"compressible", 0.5}};
+  file["motions"][0]["tracks"][0]["keys"][1] = {0.25, 7};
+  write("odd.fascia.json", file.dump(2));
+  const Outcome outcome = run({"check", "odd.fascia.json"});
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_EQ(outcome.out, "odd.fascia.json: ok, 2 warnings\n");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
+  for (const char* place : {": /skin/fat/compressible: has no effect: ", ": /motions/0/tracks/0/"})
+    EXPECT_THAT(outcome.err, HasSubstr(place));
+  EXPECT_THAT(run({"check", "-q", "odd.fascia.json"}).err, IsEmpty());
+
+  const nlohmann::json told = run({"check", "--json", "odd.fascia.json"}).json();
+  ASSERT_EQ(told.at("warnings").size(), 2u);
+  for (const nlohmann::json& warning : told.at("warnings")) EXPECT_GT(warning.at("line"), 0);
+  const nlohmann::json baked =
+      run({"bake", "--json", "odd.fascia.json", "-o", "a.fcache", "--duration", "0.1"}).json();
+  EXPECT_EQ(baked.at("warnings"), told.at("warnings"));
+  EXPECT_TRUE(run({"check", "--json", "ball.fascia.json"}).json().at("warnings").empty());
+}
+
 TEST_F(Cli, UnknownMotionNamesThoseThereAre) {
   const Outcome outcome = run({"bake", "ball.fascia.json", "--motion", "fly", "-o", "a.glb"});
   EXPECT_EQ(outcome.exitCode, 1);

@@ -124,7 +124,7 @@ TEST(Distance, OfSharpSuperellipsoidsIsWithinItsBound) {
   EXPECT_LT(far.excess_m, 2e-7);
 }
 
-// r <- r + λ∇g of spec row L10.
+// r <- r + λ∇g (Turner & Gobbetti 1998, eq. 13a).
 TEST(Distance, MovesAPenetratingPointToTheSurface) {
   Random random(22);
   for (const SolidDef& def : assortedSolids()) {

@@ -81,6 +81,16 @@ TEST(BindMotion, ClampsPosturesToTheLimits) {
   EXPECT_EQ(posture.rates[3], 0);
 }
 
+TEST(BindMotion, WarnsOnceOfATrackThatIsClamped) {
+  MotionDef motion = flex();
+  motion.tracks[0].keys = {key(0, 9), key(0.5, 0), key(1, -9)};
+  const Binding binding(motion);
+  ASSERT_EQ(binding.diagnostics.warnings().size(), 1u);
+  EXPECT_EQ(binding.diagnostics.warnings()[0].where.pointer, "/motions/0/tracks/0/keys/0");
+  EXPECT_THAT(binding.diagnostics.warnings()[0].message,
+              testing::EndsWith("will be clamped, as are 1 more of the track"));
+}
+
 TEST(BindMotion, RefusesWhatIsNotThereAllAtOnce) {
   MotionDef motion = flex();
   motion.tracks.push_back({TrackDef::Target::joint, "elbo", "rz", {key(0, 0)}});
@@ -104,7 +114,7 @@ TEST(BindMotion, ReportsTheMotionsOwnFaultsToo) {
   motion.tracks[1].name = "nothing";
   const Binding binding(motion);
   EXPECT_THAT(binding.errorPointers(),
-              ElementsAre("/motions/0/tracks/0/keys/1", "/motions/0/tracks/0/keys/1",
+              ElementsAre("/motions/0/tracks/0/keys/1/t_s", "/motions/0/tracks/0/keys/1",
                           "/motions/0/tracks/1/solid"));
 }
 

@@ -53,7 +53,7 @@ TEST(FleshValidation, RefusesPlacesThatAreNotFiniteOrAbsurd) {
     def.solids[1].position_m.z() = bad;
     def.solids[2].orientation_rad.x() = bad;
     EXPECT_THAT(pointers(errors(def)),
-                ElementsAre("/solids/1/position_m", "/solids/2/orientation_deg"));
+                ElementsAre("/solids/1/position_m/2", "/solids/2/orientation_deg/0"));
   }
 }
 
@@ -94,9 +94,9 @@ TEST(FleshValidation, RefusesBadDriverPoints) {
   EXPECT_THAT(withPoints({{1, 0.1}, {1, 0.2}}), ElementsAre("/solids/1/drivers/0/points/1"));
   EXPECT_THAT(withPoints({{1, 0.1}, {0, 0.2}}), ElementsAre("/solids/1/drivers/0/points/1"));
   EXPECT_THAT(withPoints({{0, -1}, {1, 0.2}}), ElementsAre("/solids/1/drivers/0/points/0"));
-  EXPECT_THAT(withPoints({{0, kNaN}, {1, 0.2}}), ElementsAre("/solids/1/drivers/0/points/0"));
+  EXPECT_THAT(withPoints({{0, kNaN}, {1, 0.2}}), ElementsAre("/solids/1/drivers/0/points/0/1"));
   EXPECT_THAT(withPoints({{0, 0.1}, {kInfinity, 0.2}}),
-              ElementsAre("/solids/1/drivers/0/points/1"));
+              ElementsAre("/solids/1/drivers/0/points/1/0"));
 }
 
 TEST(FleshValidation, BrokenSkeletonIsReportedOnceNotForEverySolid) {

@@ -31,13 +31,13 @@ inline const char* const kFullScene = R"({
       "drag_per_s": 0.5,
       "velocity_m_per_s": [1, 0, -1],
       "spin_deg_per_s": [0, 120.7, 0],
+      "collides": false,
+      "friction": 0.25,
       "scatter": {
         "position_m": [0.5, 0, 0],
         "orientation_deg": [0, 0, 45],
         "velocity_m_per_s": [0, 0.1, 0]
       },
-      "collides": false,
-      "friction": 0.25,
       "points": {"top": [0, 0.2, 0], "end": [0.3, 0, 0]},
       "ornaments": [
         {

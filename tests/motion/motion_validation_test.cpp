@@ -43,11 +43,15 @@ TEST(MotionValidation, AcceptsAGoodMotion) {
 
 TEST(MotionValidation, RefusesNumbersThatAreNotFiniteOrAbsurd) {
   for (double bad : {kNaN, kInfinity, -kInfinity, 2e6}) {
-    for (double Key::*number :
-         {&Key::time_s, &Key::value, &Key::tension, &Key::continuity, &Key::bias}) {
+    const std::pair<double Key::*, std::string> kNumbers[] = {{&Key::time_s, "t_s"},
+                                                              {&Key::value, "value"},
+                                                              {&Key::tension, "tension"},
+                                                              {&Key::continuity, "continuity"},
+                                                              {&Key::bias, "bias"}};
+    for (const auto& [number, key] : kNumbers) {
       MotionDef motion = goodMotion();
       motion.tracks[1].keys[1].*number = bad;
-      EXPECT_THAT(errorPointers(motion), testing::Contains("/motions/3/tracks/1/keys/1"));
+      EXPECT_THAT(errorPointers(motion), testing::Contains("/motions/3/tracks/1/keys/1/" + key));
     }
     MotionDef motion = goodMotion();
     motion.duration_s = bad;
@@ -66,7 +70,7 @@ TEST(MotionValidation, RefusesKeysAtTheSameTimeOrOutOfOrder) {
 TEST(MotionValidation, RefusesATensionOutsideItsRange) {
   MotionDef motion = goodMotion();
   motion.tracks[0].keys[2].tension = 1.01;
-  EXPECT_THAT(errorPointers(motion), ElementsAre("/motions/3/tracks/0/keys/2"));
+  EXPECT_THAT(errorPointers(motion), ElementsAre("/motions/3/tracks/0/keys/2/tension"));
 }
 
 TEST(MotionValidation, RefusesALoopThatJumps) {
@@ -134,7 +138,8 @@ TEST(MotionValidation, SaysWhatWasFoundAndExpected) {
   Diagnostics diagnostics;
   validateMotion(motion, "/m", diagnostics);
   ASSERT_EQ(diagnostics.errors().size(), 1u);
-  EXPECT_THAT(diagnostics.errors()[0].text(), HasSubstr("tension: found 3, expected"));
+  EXPECT_THAT(diagnostics.errors()[0].text(),
+              HasSubstr("tension: found 3, expected a number in [-1, 1]"));
 }
 
 TEST(PlayedDuration, IsTheLastKeyUnlessGiven) {

@@ -101,14 +101,15 @@ TEST(SkeletonValidation, RefusesNumbersThatAreNotFiniteOrAbsurd) {
     def.joints[1].offset_m.y() = bad;
     def.joints[2].orientation_rad.z() = bad;
     def.joints[0].dofs[0] = {Dof::rx, -1e9, 1e9, bad};
-    EXPECT_THAT(pointers(def), ElementsAre("/skeleton/0/dofs/rx", "/skeleton/1/offset_m",
-                                           "/skeleton/2/orientation_deg"));
+    EXPECT_THAT(pointers(def), ElementsAre("/skeleton/0/dofs/rx/rest_deg", "/skeleton/1/offset_m/1",
+                                           "/skeleton/2/orientation_deg/2"));
   }
   for (double bad : {kNaN, kInfinity}) {
     SkeletonDef def = chain();
     def.joints[0].dofs[0].max = bad;
     def.joints[1].dofs[0].min = -bad;
-    EXPECT_THAT(pointers(def), ElementsAre("/skeleton/0/dofs/rx", "/skeleton/1/dofs/rz"));
+    EXPECT_THAT(pointers(def),
+                ElementsAre("/skeleton/0/dofs/rx/max_deg", "/skeleton/1/dofs/rz/min_deg"));
   }
 }
 

@@ -75,13 +75,13 @@ std::vector<Fault> faults() {
        [](SkinDef& d) {
          d.anchors = {{0.5, 0.5, "tail", Vec3::Zero()}};
        }},
-      {"/skin/points/grid", [](SkinDef& d) { d.points = savedGrid(3, 8); }},
-      {"/skin/points/fat",
+      {"/skin/points/columns", [](SkinDef& d) { d.points = savedGrid(3, 8); }},
+      {"/skin/points/fat_m",
        [](SkinDef& d) {
          d.points = savedGrid(8, 8);
          d.points->fat.assign(63, 0.1f);
        }},
-      {"/skin/points/density",
+      {"/skin/points/density_kg_per_m2",
        [](SkinDef& d) {
          d.points = savedGrid(8, 8);
          d.points->density.assign(64, std::numeric_limits<float>::quiet_NaN());

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -13,6 +15,7 @@ constexpr double kLeastStretch = 0.2;
 }  // namespace
 
 BlendedMatrix blendBones(const PointWeights& weights, std::span<const Transform> bones) {
+  FASCIA_ASSERT(!bones.empty(), "there are bones");
   BlendedMatrix out;
   for (std::size_t k = 0; k < PointWeights::kMost && weights.weight[k] > 0; ++k) {
     const auto w = static_cast<double>(weights.weight[k]);

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -20,6 +21,7 @@ constexpr double kNoEigenvalue = 1e-12;
 
 // aᵀ b in double precision, for tall matrices.
 Eigen::MatrixXd tallProduct(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
+  FASCIA_ASSERT(a.rows() == b.rows(), "both are of the same points");
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(a.cols(), b.cols());
   for (Index row = 0; row < a.rows(); row += kBlockRows) {
     const Index count = std::min(kBlockRows, a.rows() - row);
@@ -31,6 +33,7 @@ Eigen::MatrixXd tallProduct(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) 
 
 // a b in double precision, for a tall matrix in single precision.
 Eigen::MatrixXd tallTimes(const Eigen::MatrixXf& a, const Eigen::MatrixXd& b) {
+  FASCIA_ASSERT(a.cols() == b.rows(), "a column for each row");
   Eigen::MatrixXd out(a.rows(), b.cols());
   for (Index row = 0; row < a.rows(); row += kBlockRows) {
     const Index count = std::min(kBlockRows, a.rows() - row);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 PointGraph::PointGraph(std::size_t pointCount,
@@ -28,6 +30,7 @@ PointGraph::PointGraph(std::size_t pointCount,
 }
 
 void smoothOnGraph(const PointGraph& graph, int passes, std::vector<double>& values) {
+  FASCIA_ASSERT(passes >= 0, "passes are counted");
   std::vector<double> before;
   for (int pass = 0; pass < passes; ++pass) {
     before = values;

@@ -4,6 +4,8 @@
 #include <new>
 #include <vector>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 // Every SIMD array starts on a cache line.
@@ -54,9 +56,11 @@ struct Vectors {
 };
 
 inline ConstVectors view(const VectorArray& a, std::size_t first, std::size_t count) {
+  FASCIA_ASSERT(first + count <= a.size(), "the view is of the array");
   return {a.x.data() + first, a.y.data() + first, a.z.data() + first, count};
 }
 inline Vectors view(VectorArray& a, std::size_t first, std::size_t count) {
+  FASCIA_ASSERT(first + count <= a.size(), "the view is of the array");
   return {a.x.data() + first, a.y.data() + first, a.z.data() + first, count};
 }
 

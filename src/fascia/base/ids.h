@@ -3,6 +3,8 @@
 #include <compare>
 #include <cstdint>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 // An index that knows what it indexes: swapped ids do not compile.
@@ -13,7 +15,10 @@ struct Id {
   constexpr Id() = default;
   constexpr explicit Id(std::int64_t v) : value(static_cast<std::int32_t>(v)) {}
   constexpr bool valid() const { return value >= 0; }
-  constexpr std::size_t index() const { return static_cast<std::size_t>(value); }
+  constexpr std::size_t index() const {
+    FASCIA_ASSERT(valid(), "only what exists has a place");
+    return static_cast<std::size_t>(value);
+  }
   friend constexpr auto operator<=>(Id, Id) = default;
 };
 

@@ -3,42 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
+#include <fascia/character/idle_settings.h>
 #include <fascia/field/field_list.h>
 #include <fascia/flesh/bind.h>
-#include <fascia/math/ode/integrators.h>
 
 namespace fascia {
 namespace {
-
-// The longest piece of a frame that is simulated at once.
-constexpr double kLongestFrame_s = 1.0 / 12;
-
-void checkSimulation(const SimulationDef& s, Diagnostics& diagnostics) {
-  const auto range = [&](const char* key, double value, double low, double high) {
-    if (value >= low && value <= high) return;  // false for NaN
-    diagnostics.error(std::string("/simulation/") + key,
-                      "found " + std::to_string(value) + ", expected a number from " +
-                          std::to_string(low) + " to " + std::to_string(high));
-  };
-  range("frame_rate_hz", s.frame_rate_hz, 1, 1000);
-  range("step_s", s.step_s, 0, kLongestFrame_s);
-  range("min_step_s", s.min_step_s, 1e-9, kLongestFrame_s);
-  range("max_step_s", s.max_step_s, 1e-9, kLongestFrame_s);
-  range("position_tolerance_m", s.position_tolerance_m, 1e-12, 1e3);
-  range("velocity_tolerance", s.velocity_tolerance, 1e-12, 1e3);
-  range("correction_tolerance_m", s.correction_tolerance_m, 1e-9, 1e3);
-  range("settle_s", s.settle_s, 0, 60);
-  for (int a = 0; a < 3; ++a)
-    range(("gravity_m_per_s2/" + std::to_string(a)).c_str(), s.gravity_m_per_s2[a], -1e4, 1e4);
-  if (s.integrator == "auto" || s.integrator == "leapfrog") return;
-  std::string names = "auto, leapfrog";
-  for (const IntegratorInfo& i : integrators()) {
-    if (i.name == s.integrator) return;
-    names += ", " + std::string(i.name);
-  }
-  diagnostics.error("/simulation/integrator",
-                    "found '" + s.integrator + "', expected one of " + names);
-}
 
 SkinSettings settingsOf(const SimulationDef& s, const BuildOptions& options) {
   SkinSettings out;
@@ -168,7 +139,8 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
   ornaments_ = Flesh(def_.ornaments, skeleton_, "/ornaments", diagnostics, Flesh::Role::ornament);
   const bool hasFlesh = diagnostics.ok();
   if (hasFlesh) buildSoftFlesh(diagnostics);
-  checkSimulation(def_.simulation, diagnostics);
+  validateTunables(def_.simulation, "/simulation", diagnostics);
+  if (def_.rig) validateTunables(*def_.rig, "/rig", diagnostics);
   for (std::size_t i = 0; i < def_.motions.size(); ++i) {
     const std::string pointer = "/motions/" + std::to_string(i);
     clips_.push_back(
@@ -191,6 +163,8 @@ Character::Character(const CharacterDef& def, const BuildOptions& options) : def
                                    "/skin", diagnostics);
   }
   diagnostics.throwIfErrors();
+  warnOfIdleSettings(def_, diagnostics);
+  warnings_ = diagnostics.warnings();
 }
 
 void Character::buildSoftFlesh(Diagnostics& diagnostics) {
@@ -299,6 +273,7 @@ CharacterState initialState(const Character& character, const PostureSource& sou
 
 void advance(const Character& character, const PostureSource& source, double dt_s,
              CharacterState& state, SkinStats& stats, Surroundings* surroundings) {
+  FASCIA_ASSERT(dt_s > 0, "time goes on");
   const double start = state.time_s;
   state.time_s = start + dt_s;
   LayerPoses poses(character, source, true, state, surroundings);

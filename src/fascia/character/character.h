@@ -27,6 +27,11 @@ class Character {
   // Throws Error with all faults of `def` (JSON pointers, no file or line).
   explicit Character(const CharacterDef& def, const BuildOptions& options = {});
 
+  // What stops nothing but is hardly meant: keys that are never met, settings without effect. JSON
+  // pointers; who reads the file adds its name and lines.
+  const std::vector<Issue>& warnings() const { return warnings_; }
+  void setWarnings(std::vector<Issue> warnings) { warnings_ = std::move(warnings); }
+
   const CharacterDef& def() const { return def_; }
   const Skeleton& skeleton() const { return skeleton_; }
   const Flesh& flesh() const { return flesh_; }
@@ -52,6 +57,7 @@ class Character {
   std::unique_ptr<const Skin> skin_;
   std::vector<BoundClip> clips_;
   BoundClip rest_;  // without tracks
+  std::vector<Issue> warnings_;
 };
 
 // What changes over time: a plain value that can be copied, hashed, saved and rewound.

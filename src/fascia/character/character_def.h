@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fascia/flesh/flesh.h>
@@ -13,27 +14,56 @@
 
 namespace fascia {
 
+// The skin's own two, and every method of the solver library.
+std::vector<std::string_view> skinIntegrators();
+// The longest piece of a frame that is simulated at once.
+inline constexpr double kLongestFrame_s = 1.0 / 12;
+
 struct SimulationDef {
-  double frame_rate_hz = 60;        // [1, 1000]; frames that a bake writes
-  std::string integrator = "auto";  // "auto" = the default stabilised scheme; or one of
-                                    // euler, implicit-euler, verlet, rk2, rk4, rosenbrock4, xpbd
-  double step_s = 0;                // [0, 1/12]; fixed step or first guess; 0 = chosen
-  double min_step_s = 1e-5;         // adaptive integrators
-  double max_step_s = 0.02;
-  double position_tolerance_m = 1e-3;    // ε_r: local error per step of the adaptive integrators
-  double velocity_tolerance = 1e-3;      // ε_v: relative, leapfrog's inner iteration
-  double correction_tolerance_m = 0.01;  // ε_c: a larger non-penetration correction redoes the step
+  double frame_rate_hz = 60;
+  std::string integrator = "auto";
+  double step_s = 0;
+  double min_step_s = 1e-5, max_step_s = 0.02;
+  double position_tolerance_m = 1e-3;    // ε_r
+  double velocity_tolerance = 1e-3;      // ε_v
+  double correction_tolerance_m = 0.01;  // ε_c
   Vec3 gravity_m_per_s2{0, -9.81, 0};
-  double settle_s = 0.5;  // [0, 60]; simulated before time 0 in the first posture
+  double settle_s = 0.5;
 };
+constexpr auto tunables(const SimulationDef*) {
+  using S = SimulationDef;
+  return std::tuple{
+      tunable(&S::frame_rate_hz, "frame_rate_hz", "Hz", {1, 1000}, "Frames that a bake writes"),
+      wordTunable(&S::integrator, "integrator", &skinIntegrators,
+                  "auto: the fast scheme that never explodes"),
+      tunable(&S::step_s, "step_s", "s", {0, kLongestFrame_s},
+              "Fixed step or first guess; 0: chosen"),
+      tunable(&S::min_step_s, "min_step_s", "s", {1e-7, kLongestFrame_s},
+              "For adaptive integrators"),
+      tunable(&S::max_step_s, "max_step_s", "s", {1e-7, kLongestFrame_s},
+              "For adaptive integrators"),
+      tunable(&S::position_tolerance_m, "position_tolerance_m", "m", {1e-9, 1},
+              "Local error per step of the adaptive integrators"),
+      tunable(&S::velocity_tolerance, "velocity_tolerance", "", {1e-9, 1},
+              "Relative; the leapfrog's inner iteration"),
+      tunable(&S::correction_tolerance_m, "correction_tolerance_m", "m", {1e-9, 1},
+              "A larger correction out of the flesh redoes the step"),
+      tunable(&S::gravity_m_per_s2, "gravity_m_per_s2", "m/s²", {-1e4, 1e4}, "y is up"),
+      tunable(&S::settle_s, "settle_s", "s", {0, 60},
+              "Simulated before time 0 in the first posture")};
+}
 
 // An imported, skinned mesh that is the character's skin instead of a grid. Its joints are found by
 // name in the character's skeleton; its motions can be played by name like the character's own.
 struct RigDef {
-  std::string file;                          // glTF beside the character file
-  double scale = 1;                          // (0, 1e6] of all its lengths
+  std::string file;  // glTF beside the character file
+  double scale = 1;
   std::shared_ptr<const RiggedModel> model;  // read from the file; not saved
 };
+constexpr auto tunables(const RigDef*) {
+  return std::tuple{tunable(&RigDef::scale, "scale", "", {1e-6, 1e6},
+                            "Of all its lengths; 0.01 for a file in centimetres")};
+}
 
 // What a *.fascia.json holds and a person edits. Plain values; y is up, metres.
 struct CharacterDef {

@@ -14,7 +14,6 @@ class LayeredFlesh final : public Field {
  public:
   // The bodies' solids, and which of them stands for each solid of the flesh (invalid: none).
   void setSoft(BodyField soft, std::vector<SolidId> softOf);
-  bool hasSoft() const { return soft_.solidCount() > 0; }
 
   PosedFlesh& rigid() { return rigid_; }
   const PosedFlesh& rigid() const { return rigid_; }

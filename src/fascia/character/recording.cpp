@@ -3,9 +3,12 @@
 #include <chrono>
 #include <cmath>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 Recording startRecording(const PostureSource& source, double frame_rate_hz) {
+  FASCIA_ASSERT(frame_rate_hz > 0, "frames last");
   Recording out;
   out.frame_rate_hz = frame_rate_hz;
   const PostureSource::Info info = source.info();
@@ -15,6 +18,8 @@ Recording startRecording(const PostureSource& source, double frame_rate_hz) {
 }
 
 void keepFrame(const Character& character, const CharacterState& state, bool kept, Recording& out) {
+  FASCIA_ASSERT(state.posture.values.size() == character.skeleton().valueCount(),
+                "the state is of this character");
   if (character.skin()) {
     skinSurface(*character.skin(), state.skin, out.skin);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,

@@ -8,7 +8,7 @@
 
 namespace fascia {
 
-// A simulated motion, frame by frame: what a bake writes and a player reads (L19).
+// A simulated motion, frame by frame: what a bake writes and a player reads.
 struct Recording {
   struct Frame {
     double time_s = 0;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/suggest.h>
 
 namespace fascia {
 namespace {
 
 constexpr int kSurfaceDetail = 24;  // segments around, of the mesh that is drawn
-constexpr std::size_t kMaxHeld = 64;
 // Cells along the edge of a cube of the solid's volume. Mass costs once; every energy point costs
 // in every step.
 constexpr double kMassCells = 20, kEnergyCells = 7;
@@ -27,9 +27,9 @@ Matter matterOf(const Solid& solid, const SoftSolidDef& def, const Basis& basis)
 
 void validateHeld(const SoftSolidDef& def, const Box& bounds, const std::string& pointer,
                   Diagnostics& diagnostics) {
-  if (def.held_m.size() > kMaxHeld)
+  if (def.held_m.size() > kMostHeldPoints)
     diagnostics.error(pointer, "found " + std::to_string(def.held_m.size()) +
-                                   " points, expected at most " + std::to_string(kMaxHeld));
+                                   " points, expected at most " + std::to_string(kMostHeldPoints));
   for (std::size_t i = 0; i < def.held_m.size(); ++i) {
     const Vec3& p = def.held_m[i];
     for (int axis = 0; axis < 3; ++axis) {
@@ -46,7 +46,7 @@ bool isSound(const FleshSolidDef& def, const Solid& solid, const std::string& po
              Diagnostics& diagnostics) {
   const std::size_t errorsBefore = diagnostics.errors().size();
   validate(def.soft->basis, pointer + "/soft/basis", diagnostics);
-  validate(static_cast<const BodyMaterialDef&>(*def.soft), pointer + "/soft", diagnostics);
+  validateTunables(static_cast<const BodyMaterialDef&>(*def.soft), pointer + "/soft", diagnostics);
   validateHeld(*def.soft, solid.bounds(), pointer + "/soft/held_m", diagnostics);
   if (!def.drivers.empty())
     diagnostics.error(pointer + "/drivers",
@@ -95,6 +95,8 @@ void SoftFlesh::prepare(LayeredFlesh& flesh) const {
 }
 
 void SoftFlesh::place(const PosedSkeleton& skeleton, OdeState& bodies) const {
+  FASCIA_ASSERT(skeleton.joint_world.size() == skeleton.twist_world.size(),
+                "the skeleton is posed");
   bodies.resize(model_.size());
   for (const Part& part : parts_) {
     const Transform& joint = skeleton.joint_world[part.joint.index()];
@@ -104,6 +106,8 @@ void SoftFlesh::place(const PosedSkeleton& skeleton, OdeState& bodies) const {
 }
 
 void SoftFlesh::setRigidVelocities(const PosedSkeleton& skeleton, OdeState& bodies) const {
+  FASCIA_ASSERT(bodies.r.size() == model_.size() && bodies.v.size() == model_.size(),
+                "the state is of these bodies");
   for (const Part& part : parts_)
     model_.shape(part.body).setRigidVelocity(
         model_.part(part.body, std::span<const double>(bodies.r)),
@@ -136,6 +140,7 @@ std::vector<double> SoftFlesh::shapes(const OdeState& bodies) const {
 }
 
 void SoftFlesh::setShapes(std::span<const double> shapes, double time_s, OdeState& bodies) const {
+  FASCIA_ASSERT(shapes.size() == model_.size(), "shapes of these bodies");
   bodies.resize(model_.size());
   bodies.t_s = time_s;
   std::ranges::fill(bodies.v, 0.0);

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include <fascia/base/assert.h>
 #include <fascia/math/ode/between.h>
 
 namespace fascia {
@@ -41,6 +42,7 @@ SoftStepper::SoftStepper(std::shared_ptr<const SoftFlesh> flesh, const Vec3& gra
 // Cubic between the substep's ends, with the velocities of the joint's own motion there.
 PathPoint SoftStepper::heldPoint(std::size_t part, const Vec3& held_m, double time_s) const {
   const Carrier &a = from_[part], &b = to_[part];
+  FASCIA_ASSERT(step_s_ > 0, "a substep lasts");
   const Vec3 x0 = a.frame.point(held_m), x1 = b.frame.point(held_m);
   const double h = step_s_, u = (time_s - from_s_) / h;
   const Vec3 v0 = h * a.twist.at(x0), v1 = h * b.twist.at(x1);
@@ -52,6 +54,7 @@ PathPoint SoftStepper::heldPoint(std::size_t part, const Vec3& held_m, double ti
 
 void SoftStepper::readCarriers(const PosedSkeleton& pose, std::vector<Carrier>& carriers) const {
   carriers.resize(flesh_->parts().size());
+  FASCIA_ASSERT(pose.joint_world.size() == pose.twist_world.size(), "the skeleton is posed");
   for (std::size_t p = 0; p < carriers.size(); ++p) {
     const SoftFlesh::Part& part = flesh_->parts()[p];
     carriers[p] = {pose.joint_world[part.joint.index()] * part.inJoint,
@@ -61,6 +64,8 @@ void SoftStepper::readCarriers(const PosedSkeleton& pose, std::vector<Carrier>& 
 
 std::size_t SoftStepper::advance(const Poses& poses, double end_s, OdeState& bodies) {
   const double start_s = bodies.t_s, span_s = end_s - start_s;
+  FASCIA_ASSERT(bodies.r.size() == flesh_->model().size() && bodies.v.size() == bodies.r.size(),
+                "the state is of these bodies");
   const int steps = std::max(1, static_cast<int>(std::ceil(span_s / kSubstep_s - 1e-6)));
   std::size_t putBack = 0;
   keptCount_ = 0;
@@ -83,6 +88,8 @@ std::size_t SoftStepper::advance(const Poses& poses, double end_s, OdeState& bod
 
 // A body whose joint jumps is taken along as it is.
 std::size_t SoftStepper::followJumps(OdeState& bodies) {
+  FASCIA_ASSERT(from_.size() == flesh_->parts().size() && to_.size() == from_.size(),
+                "every soft solid is carried");
   std::size_t count = 0;
   for (std::size_t p = 0; p < from_.size(); ++p) {
     const SoftFlesh::Part& part = flesh_->parts()[p];
@@ -137,6 +144,7 @@ void SoftStepper::keep(const OdeState& bodies) {
 }
 
 const OdeState& SoftStepper::at(double time_s) {
+  FASCIA_ASSERT(keptCount_ > 0 && keptCount_ <= kept_.size(), "something was stepped");
   std::size_t i = 0;
   while (i + 2 < keptCount_ && kept_[i + 1].t_s <= time_s) ++i;
   between(kept_[i], kept_[std::min(i + 1, keptCount_ - 1)], time_s, between_);

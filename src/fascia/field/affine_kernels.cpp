@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <fascia/base/assert.h>
+
 #ifndef FASCIA_AFFINE_MAP
 #define FASCIA_AFFINE_MAP
 namespace fascia {
@@ -72,6 +74,8 @@ HWY_EXPORT(mapPoints);
 void affinePoints(const Mat3& matrix, const Vec3& from, const Vec3& to, ConstVectors in,
                   Vectors out) {
   AffineMap map;
+  FASCIA_ASSERT(out.count >= in.count, "a place for each point");
+  FASCIA_ASSERT(matrix.allFinite() && to.allFinite(), "the map is finite");
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) map.matrix[3 * r + c] = static_cast<float>(matrix(r, c));
     map.from[r] = static_cast<float>(from[r]);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <fascia/base/assert.h>
 #include <fascia/field/field.h>
 
 namespace fascia {
@@ -12,6 +13,7 @@ class FieldList final : public Field {
   // Calls visit(field, id) with the field that the solid is in, and its number there.
   template <class Visit>
   decltype(auto) with(SolidId solid, const Visit& visit) const {
+    FASCIA_ASSERT(solid.index() < solidCount(), "the solid is of one of the fields");
     std::size_t i = 0;
     while (solid.index() >= ends_[i]) ++i;
     const std::size_t first = i == 0 ? 0 : ends_[i - 1];

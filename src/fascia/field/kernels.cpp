@@ -10,6 +10,7 @@
 // After foreach_target, which includes this file once per target:
 #include <hwy/highway.h>
 
+#include <fascia/base/assert.h>
 #include <fascia/field/kernel_deformations-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -145,6 +146,9 @@ HWY_EXPORT(evaluateAll);
 
 void evaluateKernel(const SolidKernel& solid, const KernelFrame& frame, ConstVectors points,
                     float* distance_m, Vectors normal) {
+  FASCIA_ASSERT(normal.count >= points.count, "a normal for each point");
+  FASCIA_ASSERT(solid.deformationCount <= kMaxDeformations,
+                "no more deformations than there is room for");
   HWY_DYNAMIC_DISPATCH(evaluateAll)(solid, frame, points, distance_m, normal);
 }
 

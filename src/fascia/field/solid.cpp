@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/suggest.h>
 
 namespace fascia {
@@ -118,6 +119,8 @@ int Solid::parameterIndex(std::string_view path) const {
 }
 
 bool Solid::write(std::size_t index, double value) {
+  FASCIA_ASSERT(index < values_.size() && layout_->infos.size() == values_.size(),
+                "the parameter exists");
   double& current = values_[index];
   if (std::isnan(value)) return false;
   const ParameterInfo& info = *layout_->infos[index];
@@ -132,6 +135,7 @@ void Solid::setParameter(int index, double value) {
 }
 
 void Solid::setParameters(std::span<const double> values) {
+  FASCIA_ASSERT(values.size() == values_.size(), "a value for each parameter");
   bool changed = false;
   for (std::size_t i = 0; i < values.size(); ++i) changed = write(i, values[i]) || changed;
   if (changed) refresh();
@@ -141,6 +145,7 @@ void Solid::refresh() {
   const Shape& primitive = *layout_->shape;
   const PrimitiveKernel before = kernel_.primitive;
   halfExtents_m_ = primitive.halfExtents_m(shapeParameters());
+  FASCIA_ASSERT((halfExtents_m_.array() > 0).all(), "a shape has a size");
   kernel_.primitive = primitive.kernel(shapeParameters());
   kernel_.deformationCount = 0;
   bounds_ = {-halfExtents_m_, halfExtents_m_};
@@ -151,6 +156,7 @@ void Solid::refresh() {
     const auto parameters = stepParameters(step);
     const Box undeformed = bounds_;
     bounds_ = step.type->bounds(parameters, zHalf_m, undeformed);
+    FASCIA_ASSERT(!bounds_.empty(), "a deformed solid has bounds");
     // The identity is left out: it costs nothing then, and no kernel divides by its amount.
     if (effective_[step.first] != 0) {
       kernel_.deformations[kernel_.deformationCount++] =
@@ -168,6 +174,8 @@ void Solid::refreshOutline(const PrimitiveKernel& before) {
       now.northSouthPower != before.northSouthPower || now.eastWestPower != before.eastWestPower)
     cornerGauge_ = shape().gauge(shapeParameters(), halfExtents_m_);
   const Vec3 corner = (1 + 1 / cornerGauge_) * halfExtents_m_;
+  FASCIA_ASSERT(cornerGauge_ > 0 && corner.allFinite(),
+                "the corner of a box is outside of the shape");
   for (std::size_t c = 0; c < outline_m_.size(); ++c)
     outline_m_[c] = deformedFromShape(
         corner.cwiseProduct(Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1)));
@@ -195,6 +203,7 @@ void Solid::evaluate(ConstVectors points_local, float* distance_m, Vectors norma
 
 void evaluatePosed(const Solid& solid, const Transform& world, ConstVectors points_world,
                    float* distance_m, Vectors normal_world) {
+  FASCIA_ASSERT(normal_world.count >= points_world.count, "a normal for each point");
   evaluateKernel(solid.kernel(), kernelFrame(world), points_world, distance_m, normal_world);
 }
 
@@ -239,6 +248,7 @@ Vec3 Solid::shapeFromDeformed(const Vec3& x) const {
 }
 
 Vec3 Solid::materialFromLocal(const Vec3& local) const {
+  FASCIA_ASSERT(local.allFinite(), "places are finite");
   const Vec3 x = shapeFromDeformed(local);
   const Vec3 u = x.cwiseQuotient(halfExtents_m_);
   const double length = u.norm();
@@ -246,6 +256,7 @@ Vec3 Solid::materialFromLocal(const Vec3& local) const {
 }
 
 Vec3 Solid::localFromMaterial(const Vec3& material) const {
+  FASCIA_ASSERT(material.allFinite(), "material coordinates are finite");
   const Vec3 x = material.cwiseProduct(halfExtents_m_);
   const double gauge = shape().gauge(shapeParameters(), x);
   return deformedFromShape(gauge > 0 ? Vec3(x * (material.norm() / gauge)) : Vec3::Zero());

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <fascia/base/assert.h>
 #include <fascia/skeleton/euler.h>
 
 namespace fascia {
@@ -220,6 +221,7 @@ std::vector<BoneFrame> findBoneFrames(const RiggedModel& model, const RestSurfac
 }
 
 SkeletonDef makeSkeleton(const RiggedModel& model, const std::vector<BoneFrame>& frames) {
+  FASCIA_ASSERT(frames.size() == model.joints.size(), "a frame for each joint");
   SkeletonDef skeleton;
   for (std::size_t j = 0; j < frames.size(); ++j) {
     JointDef joint;

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -35,6 +37,7 @@ Linearisation linearise(const LeastSquaresProblem& problem, const Eigen::VectorX
 // (JᵀJ + λ diag JᵀJ) s = −Jᵀr over the parameters that may move.
 Eigen::VectorXd dampedStep(const LeastSquaresProblem& problem, const Linearisation& linear,
                            const Eigen::VectorXd& x, double damping) {
+  FASCIA_ASSERT(damping > 0 && x.allFinite(), "a step starts somewhere");
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const bool heldLow = x[i] <= problem.low[i] && linear.gradient[i] > 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -186,6 +187,7 @@ RestSurface::Nearest RestSurface::nearest(const Vec3& p) const {
 // Pieces that the ray enters on its way must be left again before the body is; if one is open, the
 // last way out counts.
 double RestSurface::thickness(const Vec3& p, const Vec3& inward, double limit_m) const {
+  FASCIA_ASSERT(isUnit(inward, 1e-2) && limit_m >= 0, "one looks inward along a direction");
   constexpr int kMostHits = 12;
   double t = 1e-5 * size_m_, last = 0;
   int surrounding = 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/geometry/triangle_hierarchy.h>
 
 namespace fascia {
@@ -14,6 +15,7 @@ constexpr double kLeastJoints = 0.8, kLeastSurface = 0.92;  // shares that must 
 constexpr std::size_t kSurfaceProbes = 1500;
 
 const Vec3& position(const RiggedModel& model, std::size_t joint) {
+  FASCIA_ASSERT(joint < model.joints.size(), "the joint exists");
   return model.joints[joint].rest_world.translation_m;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/suggest.h>
 #include <fascia/flesh/names.h>
 #include <fascia/skeleton/euler.h>
@@ -13,12 +14,15 @@ namespace {
 // Postures and parameters are clamped when played: the person should know that a key is not met.
 void warnOutside(const std::vector<Key>& keys, double min, double max, const std::string& pointer,
                  Diagnostics& diagnostics) {
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (keys[i].value >= min && keys[i].value <= max) continue;
-    diagnostics.warning(pointer + "/keys/" + std::to_string(i),
-                        "the value " + shortNumber(keys[i].value) + " lies outside [" +
-                            shortNumber(min) + ", " + shortNumber(max) + "] and will be clamped");
-  }
+  const auto outside = [&](const Key& key) { return !(key.value >= min && key.value <= max); };
+  const auto first = std::ranges::find_if(keys, outside);
+  if (first == keys.end()) return;
+  const auto others = std::ranges::count_if(keys, outside) - 1;
+  diagnostics.warning(
+      pointer + "/keys/" + std::to_string(first - keys.begin()),
+      "the value " + shortNumber(first->value) + " lies outside [" + shortNumber(min) + ", " +
+          shortNumber(max) + "] and will be clamped" +
+          (others > 0 ? ", as are " + std::to_string(others) + " more of the track" : ""));
 }
 
 // Index into Posture::values; -1 after an error.
@@ -33,6 +37,8 @@ int bindJoint(const TrackDef& track, const Skeleton& skeleton, const std::string
   if (!dof || !joint.valid()) return -1;
   const int value = resolveDof(skeleton, joint, *dof, pointer + "/dof", diagnostics);
   if (value < 0) return -1;
+  for (std::size_t i = 0; i < track.keys.size(); ++i)
+    checkNumber(dofInfo(*dof), track.keys[i].value, entryOf(pointer + "/keys", i), diagnostics);
   const DofDef& limits = skeleton.valueDof(value);
   warnOutside(track.keys, limits.min, limits.max, pointer, diagnostics);
   return value;
@@ -97,6 +103,8 @@ void sampleFrames(const BoundClip& clip, double time_s, Posture& posture) {
   const bool still = !clip.loop && (time_s <= 0 || time_s >= clip.duration_s);
   for (const BoundClip::SampledJoint& joint : clip.sampledJoints) {
     const Transform now = sampledOwn(clip, joint, time_s);
+    FASCIA_ASSERT(joint.firstValue + 6 <= posture.values.size(),
+                  "the clip is bound to this skeleton");
     const Vec3 angles = anglesZyx(now.rotation);
     Vec3 linear = Vec3::Zero(), rates = Vec3::Zero();
     if (!still) {
@@ -185,6 +193,8 @@ void samplePosture(const BoundClip& clip, const Skeleton& skeleton, double time_
     posture.values[i] = skeleton.valueDof(static_cast<int>(i)).rest;
   }
   for (const BoundClip::JointTrack& track : clip.joints) {
+    FASCIA_ASSERT(track.value >= 0 && static_cast<std::size_t>(track.value) < posture.values.size(),
+                  "the clip is bound to this skeleton");
     const SplineSample sample = track.spline.at(time_s);
     posture.values[static_cast<std::size_t>(track.value)] = sample.value;
     posture.rates[static_cast<std::size_t>(track.value)] = sample.rate;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 // Fritsch & Carlson 1980, "Monotone Piecewise Cubic Interpolation": start from the mean of the two
@@ -12,6 +14,9 @@ namespace fascia {
 DriverCurve::DriverCurve(const std::vector<DriverDef::Point>& points,
                          DriverDef::Interpolation interpolation)
     : smooth_(interpolation == DriverDef::Interpolation::smooth) {
+  FASCIA_ASSERT(
+      !points.empty() && std::ranges::is_sorted(points, {}, &DriverDef::Point::jointValue),
+      "points increase");
   for (const DriverDef::Point& point : points) {
     nodes_.push_back({point.jointValue, point.parameter, 0});
   }
@@ -36,6 +41,7 @@ DriverCurve::DriverCurve(const std::vector<DriverDef::Point>& points,
 }
 
 DriverCurve::Sample DriverCurve::at(double jointValue) const {
+  FASCIA_ASSERT(!nodes_.empty(), "a curve has points");
   const auto right =
       std::upper_bound(nodes_.begin(), nodes_.end(), jointValue,
                        [](double value, const Node& node) { return value < node.jointValue; });

@@ -2,37 +2,18 @@
 
 #include <map>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/suggest.h>
 #include <fascia/flesh/flesh_bound.h>
 #include <fascia/flesh/names.h>
+#include <fascia/motion/motion.h>
 #include <fascia/skeleton/euler.h>
 
 namespace fascia {
 namespace {
 
-constexpr double kLargestNumber = 1e6;  // no metre or radian of a figure is larger
-// More solids than any figure needs; bounds what a hostile file can cost.
-constexpr std::size_t kMostSolids = 4096;
-constexpr std::size_t kMostDriverPoints = 1024;
 // Joint values closer than this make slopes that overflow.
 constexpr double kShortestInterval = 1e-9;
-
-bool sane(double number) {
-  return number >= -kLargestNumber && number <= kLargestNumber;
-}
-bool sane(const Vec3& v) {
-  return sane(v.x()) && sane(v.y()) && sane(v.z());
-}
-
-void validatePlacement(const FleshSolidDef& def, const std::string& pointer,
-                       Diagnostics& diagnostics) {
-  if (!sane(def.position_m)) {
-    diagnostics.error(pointer + "/position_m", "expected finite numbers in [-1e6, 1e6]");
-  }
-  if (!sane(def.orientation_rad)) {
-    diagnostics.error(pointer + "/orientation_deg", "expected finite numbers in [-1e6, 1e6]");
-  }
-}
 
 void validateNames(const FleshDef& def, const std::string& pointer, Diagnostics& diagnostics) {
   std::map<std::string_view, std::size_t> seen;
@@ -49,12 +30,15 @@ void validateNames(const FleshDef& def, const std::string& pointer, Diagnostics&
   }
 }
 
-void validatePoint(const DriverDef::Point& point, const DriverDef::Point* before,
-                   const ParameterInfo* info, const std::string& pointer,
-                   Diagnostics& diagnostics) {
-  if (!sane(point.jointValue) || !sane(point.parameter)) {
-    diagnostics.error(pointer, "expected finite numbers in [-1e6, 1e6]");
-  } else if (before && !(point.jointValue - before->jointValue >= kShortestInterval)) {
+void validatePoint(const DriverDef& def, std::size_t index, const ParameterInfo* info,
+                   const std::string& pointer, Diagnostics& diagnostics) {
+  const DriverDef::Point& point = def.points[index];
+  const DriverDef::Point* before = index > 0 ? &point - 1 : nullptr;
+  const std::size_t errorsBefore = diagnostics.errors().size();
+  checkNumber(dofInfo(def.dof), point.jointValue, pointer + "/0", diagnostics);
+  checkNumber(kKeyValue, point.parameter, pointer + "/1", diagnostics);
+  if (diagnostics.errors().size() > errorsBefore) return;
+  if (before && !(point.jointValue - before->jointValue >= kShortestInterval)) {
     diagnostics.error(pointer, "joint values must increase from point to point");
   } else if (info && (point.parameter < info->min || point.parameter > info->max)) {
     diagnostics.error(pointer, "found " + shortNumber(point.parameter) + ", expected " +
@@ -65,14 +49,13 @@ void validatePoint(const DriverDef::Point& point, const DriverDef::Point* before
 
 void validatePoints(const DriverDef& def, const ParameterInfo* info, const std::string& pointer,
                     Diagnostics& diagnostics) {
-  if (def.points.size() < 2 || def.points.size() > kMostDriverPoints) {
+  if (def.points.size() < 2 || def.points.size() > DriverDef::kMost) {
     diagnostics.error(pointer, "found " + std::to_string(def.points.size()) +
-                                   " points, expected 2 to " + std::to_string(kMostDriverPoints));
+                                   " points, expected 2 to " + std::to_string(DriverDef::kMost));
     return;
   }
   for (std::size_t i = 0; i < def.points.size(); ++i) {
-    validatePoint(def.points[i], i > 0 ? &def.points[i - 1] : nullptr, info,
-                  pointer + "/" + std::to_string(i), diagnostics);
+    validatePoint(def, i, info, pointer + "/" + std::to_string(i), diagnostics);
   }
 }
 
@@ -91,7 +74,7 @@ Flesh::Flesh(const FleshDef& def, const Skeleton& skeleton, const std::string& p
   for (std::size_t i = 0; i < def.solids.size(); ++i) {
     const FleshSolidDef& solid = def.solids[i];
     const std::string solidPointer = pointer + "/" + std::to_string(i);
-    validatePlacement(solid, solidPointer, diagnostics);
+    validateTunables(solid, solidPointer, diagnostics);
     Entry entry;
     entry.joint = resolveJoint(skeleton, solid.joint, solidPointer + "/joint", diagnostics);
     entry.inJoint = {rotationZyx(solid.orientation_rad), solid.position_m};
@@ -134,6 +117,7 @@ void Flesh::addDrivers(const FleshSolidDef& def, const Solid& solid, const Skele
 }
 
 const Solid& Flesh::restSolid(SolidId id) const {
+  FASCIA_ASSERT(bound_ && id.index() < bound_->rest.size(), "the solid is of this flesh");
   return bound_->rest[id.index()];
 }
 

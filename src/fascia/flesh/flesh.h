@@ -24,7 +24,8 @@ struct DriverDef {
   std::string parameter;  // path, e.g. "radius_m", "taper.amount"
   std::string joint;
   Dof dof = Dof::rx;
-  std::vector<Point> points;  // increasing jointValue, two to 1024; constant outside
+  std::vector<Point> points;  // increasing jointValue, two to kMost; constant outside
+  static constexpr std::size_t kMost = 1024;
   Interpolation interpolation = Interpolation::smooth;
 };
 
@@ -37,22 +38,30 @@ struct Color {
 struct SoftSolidDef : BodyMaterialDef {
   SoftSolidDef() { rigidity_Pa = 1e3, volume_Pa = 1e4, relaxation_s = 0.01; }  // fat
   BodyBasisDef basis;
-  // In the solid's frame, within its bounds, at most 64; none: some at the end that is nearest to
-  // the joint.
+  // In the solid's frame, within its bounds; none: some at the end that is nearest to the joint.
   std::vector<Vec3> held_m;
 };
+inline constexpr std::size_t kMostHeldPoints = 64;
 
 // A solid on a joint. Flesh solids shape the skin; ornaments (eyes, beak, claws) are only seen.
 struct FleshSolidDef {
   std::string name;  // unique
   std::string joint;
-  Vec3 position_m = Vec3::Zero();       // in the joint's frame; each within [-1e6, 1e6]
+  Vec3 position_m = Vec3::Zero();       // in the joint's frame
   Vec3 orientation_rad = Vec3::Zero();  // intrinsic Rz·Ry·Rx
   SolidDef solid;
   std::vector<DriverDef> drivers;
   Color color{0.72f, 0.28f, 0.26f};
   std::optional<SoftSolidDef> soft;  // not of ornaments, and not with drivers
 };
+constexpr auto tunables(const FleshSolidDef*) {
+  using S = FleshSolidDef;
+  return std::tuple{tunable(&S::position_m, "position_m", "m", {-1e6, 1e6}, "In the joint's frame"),
+                    tunable(&S::orientation_rad, "orientation_deg", "deg", {-36000, 36000},
+                            "Turns about x, y, z; applied as Rz Ry Rx")};
+}
+// More than any figure needs; bounds what a hostile file can cost.
+inline constexpr std::size_t kMostSolids = 4096;
 
 struct FleshDef {
   std::vector<FleshSolidDef> solids;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/field/affine_kernels.h>
 #include <fascia/field/solid.h>
 #include <fascia/flesh/flesh_bound.h>
@@ -41,6 +42,8 @@ bool differByStretch(const Solid& a, const Solid& b) {
 }  // namespace
 
 void PosedFlesh::write(Posed& posed, int parameter, double value, double rate) {
+  FASCIA_ASSERT(parameter >= 0 && static_cast<std::size_t>(parameter) < posed.parameters.size(),
+                "the solid has the parameter");
   posed.parameters[static_cast<std::size_t>(parameter)] = {value, rate};
   posed.written = true;
   if (posed.ahead.parameterCount() == 0) posed.ahead = posed.behind = posed.solid;
@@ -56,6 +59,7 @@ void PosedFlesh::reset(Posed& posed) {
 // Hands the wanted parameters to the solid. Returns whether any of them is changing: not one that
 // is held at the edge of its range.
 bool PosedFlesh::apply(Posed& posed) {
+  FASCIA_ASSERT(posed.values.size() == posed.parameters.size(), "a value for each parameter");
   bool changing = false;
   for (std::size_t i = 0; i < posed.parameters.size(); ++i) {
     auto& [value, rate] = posed.parameters[i];
@@ -101,6 +105,7 @@ double PosedFlesh::differentiate(Posed& posed) {
 // How the matter moves inside the frame while parameters change.
 void PosedFlesh::addSwelling(Posed& posed) {
   const double span_s = differentiate(posed);
+  FASCIA_ASSERT(span_s > 0, "the solid before and after are apart in time");
   if (!differByStretch(posed.behind, posed.ahead)) {
     posed.behindToAhead_s = span_s;
     return;
@@ -113,6 +118,7 @@ void PosedFlesh::addSwelling(Posed& posed) {
 
 // After parameters, frame and twist are set: everything that follows from them.
 void PosedFlesh::finish(Posed& posed) {
+  FASCIA_ASSERT(posed.rest, "the solid is posed from one at rest");
   posed.velocityGradient = crossMatrix(posed.twist.angular_rad_per_s);
   posed.behindToAhead_s = 0;
   if (posed.ahead.parameterCount() > 0) {  // was ever written; most solids never are
@@ -123,15 +129,19 @@ void PosedFlesh::finish(Posed& posed) {
     if (changing) addSwelling(posed);
   }
   posed.bounds = boxInWorld(posed.solid.bounds(), posed.world);
+  FASCIA_ASSERT(!posed.bounds.empty(), "a solid has bounds");
 }
 
 void PosedFlesh::evaluate(SolidId solid, ConstVectors points, float* distance_m,
                           Vectors normal) const {
+  FASCIA_ASSERT(solid.index() < posed_.size(), "the solid is of this flesh");
   const Posed& posed = posed_[solid.index()];
   evaluatePosed(posed.solid, posed.world, points, distance_m, normal);
 }
 
 void PosedFlesh::velocity(SolidId solid, ConstVectors points, Vectors velocity) const {
+  FASCIA_ASSERT(solid.index() < posed_.size() && velocity.count >= points.count,
+                "the solid is of this flesh");
   const Posed& posed = posed_[solid.index()];
   const Twist& twist = posed.twist;
   affinePoints(posed.velocityGradient, twist.origin_m, twist.linear_m_per_s, points, velocity);
@@ -157,6 +167,7 @@ Vec3 PosedFlesh::movement(const Posed& posed, const Vec3& local) {
 }
 
 Vec3 PosedFlesh::materialFromWorld(SolidId solid, const Vec3& world) const {
+  FASCIA_ASSERT(solid.index() < posed_.size(), "the solid is of this flesh");
   const Posed& posed = posed_[solid.index()];
   const Vec3 local = posed.world.inverse().point(world);
   if (posed.stretched) return local.cwiseQuotient(posed.stretch);
@@ -164,6 +175,7 @@ Vec3 PosedFlesh::materialFromWorld(SolidId solid, const Vec3& world) const {
 }
 
 Vec3 PosedFlesh::worldFromMaterial(SolidId solid, const Vec3& material) const {
+  FASCIA_ASSERT(solid.index() < posed_.size(), "the solid is of this flesh");
   const Posed& posed = posed_[solid.index()];
   if (posed.stretched) return posed.world.point(material.cwiseProduct(posed.stretch));
   const Vec3 matter = posed.rest->materialFromLocal(material);
@@ -171,6 +183,8 @@ Vec3 PosedFlesh::worldFromMaterial(SolidId solid, const Vec3& material) const {
 }
 
 void PosedFlesh::worldFromMaterials(SolidId solid, ConstVectors materials, Vectors world) const {
+  FASCIA_ASSERT(solid.index() < posed_.size() && world.count >= materials.count,
+                "the solid is of this flesh");
   const Posed& posed = posed_[solid.index()];
   if (!posed.stretched) return Field::worldFromMaterials(solid, materials, world);
   affinePoints(posed.world.rotation * posed.stretch.asDiagonal(), Vec3::Zero(),
@@ -194,10 +208,14 @@ void Flesh::prepare(PosedFlesh& out) const {
 void Flesh::pose(const Posture& posture, const PosedSkeleton& skeleton,
                  std::span<const ParameterOverride> overrides, PosedFlesh& out) const {
   prepare(out);
+  FASCIA_ASSERT(out.posed_.size() == solids_.size(), "the flesh that is posed is this one");
+  FASCIA_ASSERT(skeleton.joint_world.size() == skeleton.twist_world.size(),
+                "the skeleton is posed");
   for (std::size_t i = 0; i < solids_.size(); ++i) {
     const Entry& entry = solids_[i];
     PosedFlesh::Posed& posed = out.posed_[i];
     const std::size_t joint = entry.joint.index();
+    FASCIA_ASSERT(joint < skeleton.joint_world.size(), "the solid's joint is posed");
     const Twist& carried = skeleton.twist_world[joint];
     posed.world = skeleton.joint_world[joint] * entry.inJoint;
     posed.twist = {carried.at(posed.world.translation_m), carried.angular_rad_per_s,
@@ -206,6 +224,7 @@ void Flesh::pose(const Posture& posture, const PosedSkeleton& skeleton,
     for (std::size_t k = entry.firstDriver; k < entry.firstDriver + entry.driverCount; ++k) {
       const Driver& driver = bound_->drivers[k];
       const auto value = static_cast<std::size_t>(driver.value);
+      FASCIA_ASSERT(value < posture.values.size(), "the driving value is of this posture");
       const DriverCurve::Sample sample = driver.curve.at(posture.values[value]);
       PosedFlesh::write(posed, driver.parameter, sample.parameter,
                         sample.slope * posture.rates[value]);

@@ -1,8 +1,9 @@
 #include <fascia/geometry/box_tree.h>
 
 #include <algorithm>
-#include <cassert>
 #include <numeric>
+
+#include <fascia/base/assert.h>
 
 namespace fascia {
 
@@ -28,6 +29,7 @@ void BoxTree::build(std::span<const Box> items) {
 // Halves the items at the median of their centres along the widest axis. Equal centres fall back to
 // the items' numbers, so that the tree is the same everywhere.
 void BoxTree::buildNode(std::span<const Box> items, std::span<std::uint32_t> order) {
+  FASCIA_ASSERT(!order.empty() && areBelow(order, items.size()), "a node holds items");
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
   if (order.size() == 1) {
@@ -51,7 +53,7 @@ void BoxTree::buildNode(std::span<const Box> items, std::span<std::uint32_t> ord
 }
 
 void BoxTree::refit(std::span<const Box> items) {
-  assert(items.size() == itemCount());
+  FASCIA_ASSERT(items.size() == itemCount(), "as many boxes as the tree was built for");
   for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
     Node& node = nodes_[i];
     if (node.right == 0) {

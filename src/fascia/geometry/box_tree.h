@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <fascia/base/assert.h>
 #include <fascia/math/types.h>
 
 namespace fascia {
@@ -46,6 +47,7 @@ class BoxTree {
     while (top > 0) {
       const std::uint32_t index = stack[--top];
       const Node& node = nodes_[index];
+      FASCIA_ASSERT(top + 2 <= kStackSize, "the tree is no deeper than it can be");
       if (!enter(node.box)) continue;
       if (node.right == 0) {
         item(node.item);

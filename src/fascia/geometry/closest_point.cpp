@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 namespace {
@@ -19,6 +21,7 @@ double closestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
 // weights of Ericson 2005, §3.4; anywhere else it lies on one of the three edges.
 TrianglePoint closestPointOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
+  FASCIA_ASSERT(p.allFinite() && normal.allFinite(), "corners and point are places");
   const double square = normal.squaredNorm();
   if (square > 0) {
     const double wb = (p - a).cross(c - a).dot(normal) / square;

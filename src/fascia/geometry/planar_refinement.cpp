@@ -5,6 +5,8 @@
 
 #include <fascia/geometry/polygon.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -44,6 +46,7 @@ class Refinement {
     return edges;
   }
   std::uint32_t corner(std::size_t triangle, int c) const {
+    FASCIA_ASSERT(triangle < mesh_.triangles.size() && c >= 0, "the corner exists");
     return mesh_.triangles[triangle][static_cast<std::size_t>(c % 3)];
   }
   double length_m(const EdgeKey& edge) const {
@@ -117,6 +120,7 @@ class Refinement {
 }  // namespace
 
 PlanarMesh refined(std::span<const Vec2> positions_m, PlanarTriangles triangles, double edge_m) {
+  FASCIA_ASSERT(edge_m > 0, "edges have a length");
   Refinement refinement(positions_m, std::move(triangles));
   refinement.run(edge_m);
   return refinement.take();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/geometry/closest_point.h>
 
 namespace fascia {
@@ -50,6 +51,7 @@ TriangleHierarchy::TriangleHierarchy(const TriangleMesh& mesh)
 }
 
 void TriangleHierarchy::refit() {
+  FASCIA_ASSERT(boxes_.size() == mesh_->triangles.size(), "the mesh keeps its triangles");
   updateBoxes();
   tree_.refit(boxes_);
 }
@@ -62,13 +64,16 @@ void TriangleHierarchy::updateBoxes() {
 }
 
 std::array<Vec3, 3> TriangleHierarchy::corners(std::uint32_t triangle) const {
+  FASCIA_ASSERT(triangle < mesh_->triangles.size(), "the triangle exists");
   const auto& t = mesh_->triangles[triangle];
+  FASCIA_ASSERT(areBelow(t, mesh_->positions.size()), "corners are points of the mesh");
   return {mesh_->positions[t[0]].cast<double>(), mesh_->positions[t[1]].cast<double>(),
           mesh_->positions[t[2]].cast<double>()};
 }
 
 std::optional<TriangleHierarchy::Nearest> TriangleHierarchy::closest(const Vec3& p,
                                                                      double limit_m) const {
+  FASCIA_ASSERT(p.allFinite() && limit_m >= 0, "a search has a centre and a radius");
   std::optional<Nearest> best;
   double bestSquare = limit_m * limit_m;
   const auto key = [&](const Box& box) { return squaredDistance(box, p); };
@@ -89,6 +94,7 @@ std::optional<TriangleHierarchy::Nearest> TriangleHierarchy::closest(const Vec3&
 std::optional<TriangleHierarchy::Hit> TriangleHierarchy::firstHit(const Vec3& origin,
                                                                   const Vec3& direction,
                                                                   double tMax) const {
+  FASCIA_ASSERT(direction.squaredNorm() > 0 && tMax >= 0, "a ray goes somewhere");
   std::optional<Hit> best;
   double limit = tMax;
   const auto key = [&](const Box& box) { return squaredDistance(box, origin); };

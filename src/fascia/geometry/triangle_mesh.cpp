@@ -1,5 +1,7 @@
 #include <fascia/geometry/triangle_mesh.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 void computeNormals(const std::vector<Eigen::Vector3f>& positions,
@@ -7,6 +9,8 @@ void computeNormals(const std::vector<Eigen::Vector3f>& positions,
                     std::vector<Eigen::Vector3f>& normals) {
   normals.assign(positions.size(), Eigen::Vector3f::Zero());
   for (const auto& [a, b, c] : triangles) {
+    FASCIA_ASSERT(a < positions.size() && b < positions.size() && c < positions.size(),
+                  "corners are points of the mesh");
     // Twice the area times the unit normal: the weighting comes for free.
     const Eigen::Vector3f cross = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
     for (const std::uint32_t corner : {a, b, c}) normals[corner] += cross;
@@ -37,6 +41,7 @@ double enclosedVolume(const TriangleMesh& mesh) {
   const Vec3 origin = mesh.positions.front().cast<double>();
   double sixfold = 0;
   for (const auto& triangle : mesh.triangles) {
+    FASCIA_ASSERT(areBelow(triangle, mesh.positions.size()), "corners are points of the mesh");
     const Vec3 a = mesh.positions[triangle[0]].cast<double>() - origin;
     const Vec3 b = mesh.positions[triangle[1]].cast<double>() - origin;
     const Vec3 c = mesh.positions[triangle[2]].cast<double>() - origin;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -55,6 +57,8 @@ class Screen {
 double visibleArea(std::span<const std::array<std::uint32_t, 3>> surface,
                    std::span<const Eigen::Vector3f> points, const std::vector<bool>& chosen,
                    const Vec3& towards) {
+  FASCIA_ASSERT(chosen.size() == surface.size(), "every triangle is chosen or not");
+  FASCIA_ASSERT(isUnit(towards), "one looks along a direction");
   const Vec3 right = towards.unitOrthogonal(), up = towards.cross(right);
   Mat3 view;
   view << right.transpose(), up.transpose(), towards.transpose();

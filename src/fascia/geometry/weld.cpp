@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -226,6 +228,8 @@ void joinLooseVertices(std::span<const Triangle> triangles, std::span<const std:
 Weld weldVertices(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
                   float tolerance, const std::function<bool(std::uint32_t, std::uint32_t)>& alike) {
   const std::vector<std::uint32_t> place = Places(positions, tolerance).take();
+  FASCIA_ASSERT(place.size() == positions.size() && areBelow(place, positions.size()),
+                "every vertex has a place");
   const std::vector<HalfEdge> edges = sortedHalfEdges(triangles, place);
   Sets sets(positions.size());
   EdgeWelder welder(positions, triangles, alike, sets);
@@ -252,6 +256,9 @@ Weld weldVertices(std::span<const Eigen::Vector3f> positions, std::span<const Tr
 std::uint32_t numberComponents(std::size_t pointCount, std::span<const Triangle> triangles,
                                std::vector<std::uint32_t>& component) {
   Sets sets(pointCount);
+  FASCIA_ASSERT(
+      std::ranges::all_of(triangles, [&](const Triangle& t) { return areBelow(t, pointCount); }),
+      "corners are points");
   for (const Triangle& t : triangles) {
     sets.join(t[0], t[1]);
     sets.join(t[0], t[2]);

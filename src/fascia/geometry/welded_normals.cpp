@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 WeldedNormals::WeldedNormals(const TriangleMesh& mesh) : triangles_(mesh.triangles) {
@@ -25,6 +27,7 @@ WeldedNormals::WeldedNormals(const TriangleMesh& mesh) : triangles_(mesh.triangl
 
 void WeldedNormals::compute(const std::vector<Eigen::Vector3f>& positions,
                             std::vector<Eigen::Vector3f>& normals) const {
+  FASCIA_ASSERT(positions.size() == weld_.size(), "the mesh keeps its points");
   normals.assign(positions.size(), Eigen::Vector3f::Zero());
   for (const auto& [a, b, c] : triangles_) {
     const Eigen::Vector3f n = (positions[b] - positions[a]).cross(positions[c] - positions[a]);

@@ -8,6 +8,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -53,6 +55,7 @@ struct SparseFactorization::Impl {
   Eigen::SparseLU<SparseMatrix> lu;
 
   bool factorizeSymmetric(const SparseMatrix& a) {
+    FASCIA_ASSERT(a.isCompressed() && a.rows() == a.cols(), "the matrix is square and compressed");
     if (!choleskyPattern.matches(a)) {
       cholesky.analyzePattern(a);
       choleskyPattern.assign(a);
@@ -63,6 +66,7 @@ struct SparseFactorization::Impl {
   }
 
   bool factorizeGeneral(const SparseMatrix& a) {
+    FASCIA_ASSERT(a.isCompressed() && a.rows() == a.cols(), "the matrix is square and compressed");
     if (!luPattern.matches(a)) {
       lu.analyzePattern(a);
       luPattern.assign(a);

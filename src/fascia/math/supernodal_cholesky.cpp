@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cassert>
 #include <cmath>
 
 #include <Eigen/Core>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/index.h>
 #include <fascia/base/parallel.h>
 #include <fascia/math/cholesky/multifrontal.h>
@@ -27,6 +27,9 @@ bool storePanel(const Eigen::Ref<const Eigen::MatrixXd>& triangle,
   Eigen::MatrixXd stored = Eigen::MatrixXd::Zero(height, width);
   stored.topRows(width).setIdentity();
   triangle.triangularView<Eigen::Lower>().solveInPlace(stored.topRows(width));
+  FASCIA_ASSERT(
+      values.size() >= cholesky::panelSize(static_cast<int>(width), static_cast<int>(height)),
+      "the panel has room");
   stored.bottomRows(below.rows()).noalias() = -below * stored.topRows(width);
   cholesky::packPanel(static_cast<int>(width), static_cast<int>(height), stored.data(),
                       values.data());
@@ -37,13 +40,14 @@ bool storePanel(const Eigen::Ref<const Eigen::MatrixXd>& triangle,
 
 bool SupernodalCholesky::factorize(const SparseMatrix& a) {
   *this = {};
-  assert(a.rows() == a.cols());
+  FASCIA_ASSERT(a.rows() == a.cols(), "the matrix is square");
   if (a.rows() == 0) return true;
   const cholesky::Graph graph = cholesky::graphOf(a);
   const cholesky::Supernodes supernodes =
       cholesky::findSupernodes(graph, cholesky::nestedDissection(graph));
   const cholesky::Tasks tasks = cholesky::splitIntoTasks(supernodes);
   layOut(supernodes, tasks);
+  FASCIA_ASSERT(areBelow(rows_, solutionRows_), "panels name rows of the solution");
   std::atomic<bool> finite = true;
   const cholesky::TakeColumns take = [&](std::size_t s, const auto& triangle, const auto& below) {
     const std::span<float> values(values_.data() + panels_[s].values,
@@ -97,11 +101,14 @@ void SupernodalCholesky::layOutSubtree(const cholesky::Supernodes& supernodes, S
        row != end; ++row) {
     if (*row < subtree.endColumn) continue;
     const auto found = std::lower_bound(root.below.begin(), root.below.end(), *row);
+    FASCIA_ASSERT(found != root.below.end() && *found == *row,
+                  "what descendants reach above is a row of the root");
     *row = subtree.tail + static_cast<int>(found - root.below.begin());
   }
 }
 
 cholesky::PanelView SupernodalCholesky::view(int panel) const {
+  FASCIA_ASSERT(at(panel) < panels_.size(), "the panel exists");
   const Panel& p = panels_[at(panel)];
   return {values_.data() + p.values, values_.data() + p.end, rows_.data() + p.rows, p.width,
           p.height};
@@ -186,7 +193,8 @@ void SupernodalCholesky::sweepTop(const std::span<float>* sides, float* x, float
 
 template <int kSides>
 void SupernodalCholesky::solveSides(const std::span<float>* sides, Scratch& scratch) const {
-  for (int s = 0; s < kSides; ++s) assert(sides[s].size() == size());
+  for (int s = 0; s < kSides; ++s)
+    FASCIA_ASSERT(sides[s].size() == size(), "a right side has a number per row");
   if (size() == 0) return;
   const std::size_t tasks = taskStart_.size() - 1;
   const auto grow = [](FloatArray& a, std::size_t n) {

@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -63,6 +65,7 @@ Eigen::Vector4d nullVector(const Mat4& a, double& largest) {
 }  // namespace
 
 Mat3 bestRotation(const Mat3& M) {
+  FASCIA_ASSERT(M.allFinite(), "the moments are finite");
   const double size = M.norm();
   if (!(size > 0) || !std::isfinite(size)) return Mat3::Identity();
   const Mat3 scaled = M / size;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/measure/deformation.h>
 #include <fascia/measure/percentile.h>
 
@@ -23,12 +24,14 @@ std::vector<Edge> edgesOf(TriangleList triangles) {
 }
 
 double length(PointList points, const Edge& edge) {
+  FASCIA_ASSERT(areBelow(edge, points.size()), "an edge joins points");
   return (points[edge[0]].cast<double>() - points[edge[1]].cast<double>()).norm();
 }
 
 }  // namespace
 
 EdgeStretch edgeStretch(TriangleList triangles, PointList rest, PointList points) {
+  FASCIA_ASSERT(rest.size() == points.size(), "the surface keeps its points");
   std::vector<double> stretch;
   for (const Edge& edge : edgesOf(triangles)) {
     const double restLength = length(rest, edge);

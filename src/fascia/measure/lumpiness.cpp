@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/measure/best_rotation.h>
 #include <fascia/measure/deformation.h>
@@ -30,6 +31,7 @@ RestDetail::RestDetail(TriangleList triangles, PointList rest)
 }
 
 double RestDetail::change(std::size_t point, PointList points) const {
+  FASCIA_ASSERT(point < points.size(), "the point exists");
   const Vec3 restHere = rest_[point].cast<double>(), here = points[point].cast<double>();
   Mat3 ring = Mat3::Zero();
   Vec3 restSum = Vec3::Zero(), sum = Vec3::Zero();

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/geometry/closest_point.h>
 #include <fascia/measure/deformation.h>
 
@@ -11,6 +12,7 @@ using Corners = std::array<Vec3, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
 Corners cornersOf(const Triangle& t, PointList points) {
+  FASCIA_ASSERT(areBelow(t, points.size()), "corners are points");
   return {points[t[0]].cast<double>(), points[t[1]].cast<double>(), points[t[2]].cast<double>()};
 }
 

@@ -1,9 +1,12 @@
 #include <fascia/measure/deformation.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
 Eigen::Vector3f normalOf(const std::array<std::uint32_t, 3>& t, PointList points) {
+  FASCIA_ASSERT(areBelow(t, points.size()), "corners are points");
   return (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -75,6 +77,7 @@ KeySpline::KeySpline(std::vector<Key> keys, double period_s) {
 
 // Cubic Hermite: values and tangents at both ends.
 SplineSample KeySpline::between(const Knot& a, const Knot& b, double time_s) {
+  FASCIA_ASSERT(time_s >= a.time_s && time_s <= b.time_s, "the time lies between the knots");
   const double h = b.time_s - a.time_s;
   const double s = (time_s - a.time_s) / h;
   const double rise = b.value - a.value, m0 = h * a.out, m1 = h * b.in;

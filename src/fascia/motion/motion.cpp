@@ -10,28 +10,15 @@
 namespace fascia {
 namespace {
 
-constexpr double kLargestNumber = 1e6;  // beyond it no metre, radian or second makes sense
 // Keys closer than this count as two at once. Much smaller, and slopes overflow; much larger, and
 // deliberate jumps between frames are refused.
 constexpr double kShortestInterval = 1e-6;  // s
 constexpr double kShortestLoop = 1e-3;      // s
 
-bool inRange(double number, double low, double high) {
-  return number >= low && number <= high;  // false for NaN
-}
-
 void validateKey(const Key& key, const std::string& pointer, Diagnostics& diagnostics) {
-  const auto check = [&](const char* what, double number, double low, double high) {
-    if (inRange(number, low, high)) return;
-    diagnostics.error(pointer, std::string(what) + ": found " + shortNumber(number) +
-                                   ", expected a number in [" + shortNumber(low) + ", " +
-                                   shortNumber(high) + "]");
-  };
-  check("time", key.time_s, 0, kLargestNumber);
-  check("value", key.value, -kLargestNumber, kLargestNumber);
-  check("tension", key.tension, -1, 1);
-  check("continuity", key.continuity, -1, 1);
-  check("bias", key.bias, -1, 1);
+  validateTunables(key, pointer, diagnostics);
+  // In memory's unit: what a joint's degree of freedom may be is for who binds it to say.
+  checkNumber(kKeyValue, key.value, pointer + "/value", diagnostics);
 }
 
 void validateOrder(const std::vector<Key>& keys, const std::string& pointer,
@@ -125,11 +112,9 @@ double playedDuration_s(const MotionDef& motion) {
 
 void validateMotion(const MotionDef& motion, const std::string& pointer, Diagnostics& diagnostics) {
   if (motion.name.empty()) diagnostics.error(pointer + "/name", "a motion needs a name");
-  if (!inRange(motion.duration_s, 0, kLargestNumber)) {
-    diagnostics.error(pointer + "/duration_s", "found " + shortNumber(motion.duration_s) +
-                                                   ", expected a number in [0, 1e6]");
-    return;  // nothing can be said about loops
-  }
+  const std::size_t errorsBefore = diagnostics.errors().size();
+  validateTunables(motion, pointer, diagnostics);
+  if (diagnostics.errors().size() > errorsBefore) return;  // nothing can be said about loops
   if (motion.tracks.size() > kMostTracks) {
     diagnostics.error(pointer + "/tracks", "found " + std::to_string(motion.tracks.size()) +
                                                " tracks, expected at most " +

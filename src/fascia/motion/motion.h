@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fascia/base/error.h>
+#include <fascia/base/tunable.h>
 
 namespace fascia {
 
@@ -15,6 +16,17 @@ struct Key {
   double value = 0;  // metre or radian; a solid's parameter: its own unit
   double tension = 0, continuity = 0, bias = 0;
 };
+constexpr auto tunables(const Key*) {
+  return std::tuple{
+      tunable(&Key::time_s, "t_s", "s", {0, 1e6}, "When").required(),
+      tunable(&Key::tension, "tension", "", {-1, 1}, "1: straight, -1: round"),
+      tunable(&Key::continuity, "continuity", "", {-1, 1},
+              "Not 0: a corner, out of or into the curve"),
+      tunable(&Key::bias, "bias", "", {-1, 1}, "1: swings over after the key, -1: before it")};
+}
+// Of a key, in the solid parameter's own unit; for joints see kDofAngle and kDofShift.
+inline constexpr TunableInfo kKeyValue{
+    "value", "", {-1e6, 1e6}, "Of a solid's parameter, in its own unit"};
 
 // One animated number: a joint's degree of freedom or a solid's parameter.
 struct TrackDef {
@@ -27,10 +39,15 @@ struct TrackDef {
 
 struct MotionDef {
   std::string name;
-  double duration_s = 0;         // [0, 1e6]; 0 = the last key's time
-  bool loop = false;             // repeats every duration; tangents wrap. See KeySpline.
+  double duration_s = 0;
+  bool loop = false;             // every duration; tangents wrap. See KeySpline.
   std::vector<TrackDef> tracks;  // at most kMostTracks
 };
+constexpr auto tunables(const MotionDef*) {
+  return std::tuple{
+      tunable(&MotionDef::loop, "loop", "Repeats; the last posture equals the first"),
+      tunable(&MotionDef::duration_s, "duration_s", "s", {0, 1e6}, "0: the last key's time")};
+}
 
 // The duration that a motion plays for: its own, or the last key's time.
 double playedDuration_s(const MotionDef& motion);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -20,6 +22,7 @@ struct Around {
 };
 
 Around around(const SampledMotion& motion, double time_s) {
+  FASCIA_ASSERT(motion.frameCount() > 0 && motion.rate_hz > 0, "a sampled motion has frames");
   const std::size_t frames = motion.frameCount();
   const auto count = static_cast<double>(frames);
   double frame = time_s * motion.rate_hz;
@@ -62,7 +65,10 @@ Vector smooth(const std::array<Vector, 4>& p, const Around& at) {
 }  // namespace
 
 Transform sampleJoint(const SampledMotion& motion, std::size_t joint, double time_s) {
+  FASCIA_ASSERT(joint < motion.joints.size(), "the motion moves the joint");
   const Around at = around(motion, time_s);
+  FASCIA_ASSERT(areBelow(at.frame, motion.frameCount()), "frames around a time are frames");
+  FASCIA_ASSERT(at.share >= 0 && at.share <= 1, "a time lies between two frames");
   std::array<Eigen::Vector4f, 4> turns;
   std::array<Eigen::Vector3f, 4> places;
   for (std::size_t i = 0; i < 4; ++i) {

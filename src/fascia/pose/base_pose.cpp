@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -77,6 +78,7 @@ Vector3f centerOf(const PointWeights& w, const Vector3f& rest,
 }  // namespace
 
 BasePose::BasePose(const PoseSource& source, const PoseMesh& mesh) {
+  FASCIA_ASSERT(source.weights.size() == mesh.size(), "every point has weights");
   const auto byPair = trianglesByPair(source, mesh);
   rest_.resize(mesh.size());
   center_.resize(mesh.size());
@@ -98,9 +100,13 @@ BasePose::BasePose(const PoseSource& source, const PoseMesh& mesh) {
 void BasePose::place(std::span<const JointMotion> joints, std::size_t begin, std::size_t end,
                      std::span<Vector4f> position, std::span<Vector4f> turn,
                      std::span<WideRotation> rotation) const {
+  FASCIA_ASSERT(begin <= end && end <= rest_.size(), "the points exist");
+  FASCIA_ASSERT(position.size() >= end && turn.size() >= end && rotation.size() >= end,
+                "a place for each point");
   for (std::size_t i = begin; i < end; ++i) {
     const Influence* k = &influences_[firstInfluence_[i]];
     const Influence* last = influences_.data() + firstInfluence_[i + 1];
+    FASCIA_ASSERT(k < last && k->joint < joints.size(), "a joint carries the point");
     const JointMotion& heaviest = joints[k->joint];
     if (last - k == 1) {
       position[i] = heaviest.point(rest_[i]);

@@ -1,5 +1,7 @@
 #include <fascia/pose/dents.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -25,6 +27,8 @@ void gather(const Box& bounds, const Vec3& origin_m, std::span<const Vector4f> p
 
 // Moves pressed points out of one solid; notes by how much.
 void pressOut(const Field& field, SolidId solid, std::span<Vector4f> position, Dents::Scratch& s) {
+  FASCIA_ASSERT(s.point.size() == s.inside.size() && s.ring.size() == position.size(),
+                "the points inside are gathered");
   const std::size_t count = s.inside.size();
   s.distance_m.resize(count);
   s.normal.resize(count);
@@ -46,6 +50,8 @@ void pressOut(const Field& field, SolidId solid, std::span<Vector4f> position, D
 
 // The rings around pressed points share their shift.
 void giveWay(const PoseMesh& mesh, std::span<Vector4f> position, Dents::Scratch& s) {
+  FASCIA_ASSERT(position.size() == mesh.size() && s.shift.size() == mesh.size(),
+                "a shift for each point");
   const std::size_t pressed = s.active.size();
   std::size_t begin = 0;
   for (std::uint8_t ring = 2; ring <= kDentRings; ++ring) {

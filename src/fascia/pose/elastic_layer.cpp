@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -40,6 +41,8 @@ std::vector<std::uint32_t> blendedPoints(const PoseSource& source, const PoseMes
 
 ElasticLayer::ElasticLayer(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
                            std::span<const float> tightness, std::span<const char> rigid) {
+  FASCIA_ASSERT(tightness.size() == mesh.size() && rigid.size() == mesh.size(),
+                "a dial for each point");
   std::vector<float> smoothing_m(mesh.size());
   for (std::size_t i = 0; i < mesh.size(); ++i)
     smoothing_m[i] = (kLoose + (kTight - kLoose) * tightness[i]) * parts.radius_m[i];
@@ -50,6 +53,8 @@ ElasticLayer::ElasticLayer(const PoseSource& source, const PoseMesh& mesh, const
 
 void ElasticLayer::number(const PoseMesh& mesh, std::span<const float> way,
                           std::span<const float> smoothing_m, std::span<const char> rigid) {
+  FASCIA_ASSERT(way.size() == mesh.size() && smoothing_m.size() == mesh.size(),
+                "a length for each point");
   bentOf_.assign(mesh.size(), kNone);
   for (std::uint32_t i = 0; i < mesh.size(); ++i) {
     if (rigid[i] || way[i] >= kFar * smoothing_m[i] + 2 * mesh.edge_m[i]) continue;
@@ -87,6 +92,7 @@ void ElasticLayer::factorize(const PoseMesh& mesh, std::span<const float> smooth
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<std::pair<std::uint32_t, double>> row;
   for (const Point& middle : bent_) {
+    FASCIA_ASSERT(bentOf_[middle.point] < bent_.size(), "what bends is numbered");
     row.clear();
     double sum = 0;
     for (const PoseMesh::Edge& e : mesh.around(middle.point)) {
@@ -116,6 +122,10 @@ void ElasticLayer::factorize(const PoseMesh& mesh, std::span<const float> smooth
 // The residuals e_i / A_i of bent points [begin, end).
 void ElasticLayer::bend(std::span<const WideRotation> rotation, std::span<const Vector4f> position,
                         std::size_t begin, std::size_t end, FrameArray& residual) const {
+  FASCIA_ASSERT(begin <= end && end <= bent_.size() && residual.size() == bent_.size(),
+                "the points bend");
+  FASCIA_ASSERT(rotation.size() == position.size() && position.size() == bentOf_.size(),
+                "the pose is of this skin");
   for (std::size_t k = begin; k < end; ++k) {
     const Point& p = bent_[k];
     Vector4f turned = rotation[p.point] * p.weightedSum, apart = Vector4f::Zero();
@@ -133,6 +143,8 @@ void ElasticLayer::bend(std::span<const WideRotation> rotation, std::span<const 
 void ElasticLayer::relax(std::span<const WideRotation> rotation, std::span<Vector4f> position,
                          Scratch& scratch) const {
   if (solved_.empty()) return;
+  FASCIA_ASSERT(rotation.size() == position.size() && position.size() == bentOf_.size(),
+                "the pose is of this skin");
   scratch.residual.resize(bent_.size());
   for (std::vector<float>* a : {&scratch.x, &scratch.y, &scratch.z}) a->resize(solved_.size());
   parallelFor((bent_.size() + kBendsPerTask - 1) / kBendsPerTask, [&](std::size_t chunk) {
@@ -151,6 +163,8 @@ void ElasticLayer::relax(std::span<const WideRotation> rotation, std::span<Vecto
     }
   });
   system_.solve(scratch.x, scratch.y, scratch.z, scratch.solver);
+  FASCIA_ASSERT(areFinite(scratch.x) && areFinite(scratch.y) && areFinite(scratch.z),
+                "the solution is finite");
   for (std::size_t k = 0; k < solved_.size(); ++k)
     position[solved_[k]] += Vector4f(scratch.x[k], scratch.y[k], scratch.z[k], 0);
 }

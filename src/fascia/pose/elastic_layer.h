@@ -32,8 +32,6 @@ class ElasticLayer {
   ElasticLayer(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
                std::span<const float> tightness, std::span<const char> rigid);
 
-  // Points whose shape is solved for: all others are as one bone carries them.
-  std::size_t solvedPoints() const { return solved_.size(); }
   std::size_t nonZeros() const { return system_.nonZeros(); }
   void relax(std::span<const WideRotation> rotation, std::span<Vector4f> position,
              Scratch& scratch) const;

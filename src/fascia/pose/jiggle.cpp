@@ -6,6 +6,7 @@
 #include <queue>
 #include <unordered_map>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 #include <fascia/pose/softness.h>
 
@@ -24,6 +25,7 @@ constexpr std::size_t kJigglesPerTask = 512;
 constexpr float kFrequency_Hz = 7, kAtRadius = 0.03f, kAtSize_m = 1.7f;
 
 float frequency_Hz(float radius_m, float size_m, float dial) {
+  FASCIA_ASSERT(size_m > 0 && dial > 0, "only what jiggles has a frequency");
   const float thickness = std::sqrt(kAtRadius * size_m / std::max(radius_m, 0.01f * size_m));
   const float figure = std::sqrt(std::max(0.3f, size_m / kAtSize_m));
   return kFrequency_Hz * thickness / figure / std::sqrt(2 * dial);  // the dial is a compliance
@@ -58,6 +60,8 @@ std::vector<std::pair<float, std::uint32_t>> pointsWithin(const PoseMesh& mesh, 
 
 Jiggle::Jiggle(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
                std::span<const float> dial) {
+  FASCIA_ASSERT(dial.size() == mesh.size() && source.weights.size() == mesh.size(),
+                "a dial for each point");
   if (std::all_of(dial.begin(), dial.end(), [](float d) { return d <= 0; })) return;
   const std::vector<float> softness = softnessOf(source, mesh, parts);
   std::vector<std::vector<Share>> shares(mesh.size());
@@ -79,6 +83,8 @@ Jiggle::Jiggle(const PoseSource& source, const PoseMesh& mesh, const LimbParts& 
 void Jiggle::placeNodes(const PoseMesh& mesh, const LimbParts& parts,
                         std::span<const float> softness, std::span<const float> dial,
                         std::vector<std::vector<Share>>& shares) {
+  FASCIA_ASSERT(softness.size() == mesh.size() && shares.size() == mesh.size(),
+                "a softness for each point");
   std::vector<std::uint32_t> order(mesh.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -108,6 +114,9 @@ void Jiggle::step(double dt_s, std::span<const Vector4f> position, const Vec3& o
       a->assign(nodes_.size(), Vector4f::Zero());
   }
   const auto h = static_cast<float>(dt_s);
+  FASCIA_ASSERT(h > 0, "time goes on");
+  FASCIA_ASSERT(state.velocity.size() == nodes_.size() && state.place.size() == nodes_.size(),
+                "the state is of these nodes");
   const Vector4f moved = wide((origin_m - state.origin_m).cast<float>());
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     const Vector4f& at = position[nodes_[k].point];
@@ -135,6 +144,8 @@ void Jiggle::step(double dt_s, std::span<const Vector4f> position, const Vec3& o
 void Jiggle::add(const JiggleState& state, FrameArray& shown, std::span<Vector4f> position) const {
   if (state.offset.size() != nodes_.size()) return;
   shown.resize(nodes_.size());
+  FASCIA_ASSERT(points_.size() + 1 == firstShare_.size() || points_.empty(),
+                "every point has its shares");
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     const float length = state.offset[k].norm(), limit = nodes_[k].limit_m;
     const float cut = length > 0 ? limit * std::tanh(length / limit) / length : 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 #include <fascia/rig/joint_meaning.h>
 
@@ -35,6 +36,7 @@ float turnGate(const Vector4f& a, const Vector4f& b) {
 float volumeSeenFrom(const Vector4f& center,
                      std::span<const std::array<std::uint32_t, 3>> triangles,
                      std::span<const Vector4f> position) {
+  FASCIA_ASSERT(center.allFinite(), "one sees from somewhere");
   float sum = 0;
   for (const auto& t : triangles) {
     const Vector4f a = position[t[0]] - center, b = position[t[1]] - center,
@@ -86,6 +88,8 @@ std::vector<float> offSkull(const PoseSource& source) {
 
 bool JointVolume::choose(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
                          std::size_t joint, Joint& out, std::vector<float>& bump) {
+  FASCIA_ASSERT(joint < parts.part.size() && source.weights.size() == mesh.size(),
+                "the joint exists");
   const int above = parts.bodyAbove(joint);
   if (above < 0 || !parts.part[joint].exists()) return false;
   const auto parent = static_cast<std::size_t>(above);
@@ -133,6 +137,7 @@ bool JointVolume::choose(const PoseSource& source, const PoseMesh& mesh, const L
 // the joint's side.
 void JointVolume::prepare(const PoseSource& source, const PoseMesh& mesh, const SkinSpread& spread,
                           std::span<const float> keep, std::span<const float> bump, Joint& out) {
+  FASCIA_ASSERT(keep.size() == mesh.size() && bump.size() == mesh.size(), "a share for each point");
   const std::size_t count = mesh.size();
   std::vector<float> even(count, 0.f), field[2][3];
   for (auto& side : field)
@@ -165,6 +170,7 @@ void JointVolume::prepare(const PoseSource& source, const PoseMesh& mesh, const 
 JointVolume::JointVolume(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
                          const SkinSpread& spread, std::span<const float> dial) {
   std::vector<float> keep = offSkull(source);
+  FASCIA_ASSERT(keep.size() == dial.size(), "a dial for each point");
   for (std::size_t i = 0; i < keep.size(); ++i) keep[i] *= dial[i];
   std::vector<Joint> all(source.joints.size());
   std::vector<char> chosen(all.size(), 0);
@@ -180,8 +186,10 @@ JointVolume::JointVolume(const PoseSource& source, const PoseMesh& mesh, const L
 
 void JointVolume::restore(std::span<const JointMotion> motion, std::span<const Vector4f> position,
                           std::span<float> along) const {
+  FASCIA_ASSERT(along.size() == position.size(), "a way for each point");
   for (const Joint& j : joints_) {
     const JointMotion &parent = motion[j.parent], &own = motion[j.joint];
+    FASCIA_ASSERT(j.rest_m3 > 0, "a joint has a volume");
     const float turned = turnGate(parent.turn, own.turn);
     if (turned <= 0) continue;
     const float volume = volumeSeenFrom(own.point(j.center_m), j.triangles, position);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -31,6 +32,8 @@ constexpr float kInfluence = 0.6f;
 }  // namespace
 
 void LimbContact::measureBend(std::span<const JointMotion> motion, std::span<float> bend) const {
+  FASCIA_ASSERT(bend.size() <= motion.size() && bend.size() <= parts_->part.size(),
+                "a bend for each joint");
   for (std::size_t j = 0; j < bend.size(); ++j) {
     bend[j] = 0;
     const int above = parts_->bodyAbove(j);
@@ -46,6 +49,8 @@ void LimbContact::measureBend(std::span<const JointMotion> motion, std::span<flo
 // Bounds in a pose: which limbs come near which, and which clusters of their skin.
 void LimbContact::cull(std::span<const JointMotion> motion, std::span<const float> bend,
                        std::span<const Vector4f> position, Scratch& scratch) const {
+  FASCIA_ASSERT(position.size() == rest_.size() && scratch.pairGate.size() == pairs_.size(),
+                "the pose is of this skin");
   const auto reachOf = [](const LimbPart& p) { return 0.5f * p.length_m() + p.greatestRadius_m(); };
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const Pair& pair = pairs_[k];
@@ -58,6 +63,8 @@ void LimbContact::cull(std::span<const JointMotion> motion, std::span<const floa
   }
   parallelFor(clusters_.size(), [&](std::size_t c) {
     const Cluster& cluster = clusters_[c];
+    FASCIA_ASSERT(!cluster.points.empty() && cluster.home < pairsOf_.size(),
+                  "a cluster holds points of a part");
     std::vector<std::uint32_t>& near = scratch.near[c];
     near.clear();
     Vector4f middle = Vector4f::Zero();
@@ -80,6 +87,7 @@ void LimbContact::cull(std::span<const JointMotion> motion, std::span<const floa
 LimbContact::Hit LimbContact::find(std::span<const JointMotion> motion,
                                    std::span<const std::uint32_t> near, std::uint32_t point,
                                    const Vector4f& x) const {
+  FASCIA_ASSERT(point < parts_->home.size() && x.allFinite(), "a point is somewhere");
   Hit best;
   const std::uint32_t home = parts_->home[point];
   const Vector4f normal = motion[home].rotation * normal_[point];
@@ -123,6 +131,7 @@ LimbContact::Hit LimbContact::find(std::span<const JointMotion> motion,
 Vector4f LimbContact::pushOut(std::span<const JointMotion> motion, const Pair& pair,
                               std::uint32_t point, const Vector4f& x, float share,
                               float depth_m) const {
+  FASCIA_ASSERT(point < parts_->radius_m.size() && share >= 0, "a point is pushed outward");
   const LimbPart &a = parts_->part[pair.a], &b = parts_->part[pair.b];
   const float gap = kGap * b.meanRadius_m() * smoothStep(depth_m / (0.1f * b.meanRadius_m()));
   const float overlap = overlap_m_[pair.overlap + parts_->place[point]];
@@ -153,6 +162,9 @@ void LimbContact::findHits(std::span<const JointMotion> motion, std::span<const 
 // Which contacts count as a whole: both sides must be hit (one-sided hits are faults of the fit),
 // and not too deep.
 void LimbContact::gatePairs(std::span<const float> bend, Scratch& scratch) const {
+  FASCIA_ASSERT(
+      scratch.pairDepth.size() == pairs_.size() && scratch.pairGate.size() == pairs_.size(),
+      "a gate for each pair");
   std::fill(scratch.pairDepth.begin(), scratch.pairDepth.end(), 0.f);
   for (const LimbContact::Hit& hit : scratch.hit) {
     if (hit.pair < 0) continue;
@@ -178,6 +190,9 @@ void LimbContact::gatePairs(std::span<const float> bend, Scratch& scratch) const
 void LimbContact::meet(std::span<const JointMotion> motion, std::span<const float> bend,
                        std::span<Vector4f> position, std::span<Vector4f> turn,
                        std::span<WideRotation> rotation, Scratch& scratch) const {
+  FASCIA_ASSERT(position.size() == rest_.size() && turn.size() == rest_.size() &&
+                    rotation.size() == rest_.size(),
+                "the pose is of this skin");
   scratch.hit.assign(rest_.size(), {});
   scratch.touched = false;
   scratch.pairDepth.resize(pairs_.size());
@@ -210,6 +225,7 @@ void LimbContact::meet(std::span<const JointMotion> motion, std::span<const floa
 
 // Hit points and the rings around them.
 void LimbContact::spreadActive(Scratch& scratch) const {
+  FASCIA_ASSERT(scratch.hit.size() == rest_.size(), "contacts were found for each point");
   scratch.ring.assign(rest_.size(), 0);
   scratch.active.clear();
   for (std::uint32_t i = 0; i < rest_.size(); ++i)
@@ -250,6 +266,8 @@ void LimbContact::finish(std::span<const JointMotion> motion,
                          Scratch& scratch) const {
   if (!scratch.touched) return;
   spreadActive(scratch);
+  FASCIA_ASSERT(position.size() == rest_.size() && rotation.size() == rest_.size(),
+                "the pose is of this skin");
   scratch.before.resize(rest_.size());
   scratch.next.resize(rest_.size());
   for (const std::uint32_t i : scratch.active) {

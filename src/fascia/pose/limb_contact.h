@@ -40,8 +40,6 @@ class LimbContact {
   LimbContact(const PoseSource& source, const PoseMesh& mesh,
               std::shared_ptr<const LimbParts> parts, std::span<const char> rigid);
 
-  std::size_t pairCount() const { return pairs_.size(); }
-
   // How far each joint is bent against the body above it: 0 straight … 1. A twist makes no crease.
   void measureBend(std::span<const JointMotion> motion, std::span<float> bend) const;
   // Brings both sides of every contact together; hit points turn with their own bone.

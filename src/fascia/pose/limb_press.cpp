@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -66,6 +67,7 @@ std::vector<std::uint32_t> thinned(const PoseMesh& mesh, std::span<const std::ui
 LimbPress::LimbPress(const PoseSource& source, const PoseMesh& mesh,
                      std::shared_ptr<const LimbParts> parts, std::span<const float> softness)
     : parts_(std::move(parts)), softness_(softness.begin(), softness.end()) {
+  FASCIA_ASSERT(parts_ && softness_.size() == mesh.size(), "a softness for each point");
   const auto joints = static_cast<std::uint32_t>(source.joints.size());
   for (std::uint32_t j = 0; j < joints; ++j) above_.push_back(parts_->bodyAbove(j));
   std::vector<Limb> all(joints);

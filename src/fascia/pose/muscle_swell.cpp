@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -25,6 +26,7 @@ float strengthOf(float dial) {
 
 MuscleSwell::MuscleSwell(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
                          const SkinSpread& spread, std::span<const float> dial) {
+  FASCIA_ASSERT(dial.size() == mesh.size(), "a dial for each point");
   if (std::all_of(dial.begin(), dial.end(), [](float d) { return d <= 0; })) return;
   std::vector<float> strength;
   for (std::uint32_t j = 0; j < source.joints.size(); ++j) {
@@ -55,6 +57,7 @@ MuscleSwell::MuscleSwell(const PoseSource& source, const PoseMesh& mesh, const L
 void MuscleSwell::prepare(const PoseMesh& mesh, const LimbParts& parts, const SkinSpread& spread,
                           std::span<const float> dial, float strength, Muscle& muscle) {
   const LimbPart& bone = parts.part[muscle.bone];
+  FASCIA_ASSERT(bone.length_m() > 0, "a bone with a muscle has a length");
   std::vector<float> field[3];
   for (std::vector<float>& f : field) f.assign(mesh.size(), 0.f);
   for (const std::uint32_t i : parts.skin[muscle.bone]) {
@@ -77,6 +80,8 @@ void MuscleSwell::prepare(const PoseMesh& mesh, const LimbParts& parts, const Sk
 
 void MuscleSwell::swell(std::span<const JointMotion> motion, std::span<float> along) const {
   for (const Muscle& m : muscles_) {
+    FASCIA_ASSERT(m.above < motion.size() && m.joint < motion.size() && m.bone < motion.size(),
+                  "the muscle's joints move");
     const Vector4f in =
         motion[m.above].rotation * m.towardsAbove + motion[m.joint].rotation * m.along;
     const Vector4f bent = motion[m.bone].rotation.back(in) - m.rest;

@@ -25,7 +25,6 @@ class MuscleSwell {
   MuscleSwell(const PoseSource& source, const PoseMesh& mesh, const LimbParts& parts,
               const SkinSpread& spread, std::span<const float> dial);
 
-  std::size_t muscleCount() const { return muscles_.size(); }
   // Adds to `along` (per point, along its normal, m).
   void swell(std::span<const JointMotion> motion, std::span<float> along) const;
 

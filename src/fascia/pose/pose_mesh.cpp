@@ -5,6 +5,7 @@
 #include <numeric>
 #include <queue>
 
+#include <fascia/base/assert.h>
 #include <fascia/pose/point_grid.h>
 
 namespace fascia {
@@ -102,6 +103,10 @@ void orientNormals(const std::vector<std::uint32_t>& piece, PoseMesh& mesh) {
 
 // Sorted by point, each edge once in either direction.
 void storeEdges(std::vector<HalfEdge> found, PoseMesh& mesh) {
+  FASCIA_ASSERT(
+      std::ranges::all_of(
+          found, [&](const HalfEdge& e) { return e.from < mesh.size() && e.to < mesh.size(); }),
+      "edges join points");
   std::stable_sort(found.begin(), found.end(), [](const HalfEdge& a, const HalfEdge& b) {
     return a.from < b.from || (a.from == b.from && a.to < b.to);
   });
@@ -126,6 +131,7 @@ void storeEdges(std::vector<HalfEdge> found, PoseMesh& mesh) {
 }  // namespace
 
 PoseMesh makePoseMesh(const PoseSource& source) {
+  FASCIA_ASSERT(source.weights.size() == source.points.size(), "every point has weights");
   PoseMesh mesh;
   mesh.rest.assign(source.points.begin(), source.points.end());
   mesh.triangles.assign(source.triangles.begin(), source.triangles.end());
@@ -145,6 +151,7 @@ PoseMesh makePoseMesh(const PoseSource& source) {
   const float least =
       std::max(1e-12f * mesh.size_m * mesh.size_m, kLeastArea * static_cast<float>(total / points));
   for (float& area : mesh.area_m2) area = std::max(area, least);
+  FASCIA_ASSERT(mesh.firstEdge.back() == mesh.edges.size(), "every edge starts at a point");
   return mesh;
 }
 
@@ -163,6 +170,7 @@ float weightDistance(const PointWeights& a, const PointWeights& b) {
 
 std::vector<float> wayAlongEdges(const PoseMesh& mesh, std::span<const std::uint32_t> from,
                                  float most_m) {
+  FASCIA_ASSERT(areBelow(from, mesh.size()), "a way starts at points");
   using Entry = std::pair<float, std::uint32_t>;
   std::vector<float> way(mesh.size(), std::numeric_limits<float>::max());
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;

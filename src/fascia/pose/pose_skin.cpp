@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 #include <fascia/pose/softness.h>
 
@@ -33,8 +34,11 @@ void forChunks(std::size_t count, const Task& task) {
 PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
     : mesh_(makePoseMesh(source)), jointCount_(source.joints.size()) {
   parts_ = std::make_shared<const LimbParts>(makeLimbParts(source, mesh_));
+  FASCIA_ASSERT(parts_->home.size() == mesh_.size() && parts_->part.size() == jointCount_,
+                "every point is of a part");
   base_ = BasePose(source, mesh_);
   rigid_ = dials.rigid.empty() ? stiffPieces(source) : dials.rigid;
+  FASCIA_ASSERT(rigid_.size() == mesh_.size(), "every point is rigid or not");
   contact_ = LimbContact(source, mesh_, parts_, rigid_);
   elastic_ = ElasticLayer(source, mesh_, *parts_,
                           valuesOf(dials.tightness, rigid_, PoseDials::kTightness), rigid_);
@@ -45,6 +49,7 @@ PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
                          valuesOf(dials.muscle, rigid_, PoseDials::kMuscle));
   jiggle_ = Jiggle(source, mesh_, *parts_, valuesOf(dials.jiggle, rigid_, PoseDials::kJiggle));
   std::vector<float> softness = softnessOf(source, mesh_, *parts_);
+  FASCIA_ASSERT(softness.size() == mesh_.size(), "a softness for each point");
   for (std::size_t i = 0; i < softness.size(); ++i)
     if (rigid_[i]) softness[i] = 0;
   press_ = LimbPress(source, mesh_, parts_, softness);
@@ -54,6 +59,7 @@ PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
 // Joints relative to an origin that goes with the root: floats stay exact far away from the
 // world's.
 Vec3 PoseSkin::placeJoints(std::span<const Transform> motion, Scratch& scratch) const {
+  FASCIA_ASSERT(motion.size() == jointCount_, "a motion for each joint");
   const Vec3 origin = motion.empty() ? Vec3::Zero().eval() : motion[0].translation_m;
   scratch.joints.clear();
   for (const Transform& t : motion)
@@ -63,6 +69,8 @@ Vec3 PoseSkin::placeJoints(std::span<const Transform> motion, Scratch& scratch) 
 
 // Volume and muscles along the normals, no farther than flesh goes.
 void PoseSkin::displaceFlesh(Scratch& scratch) const {
+  FASCIA_ASSERT(scratch.position.size() == pointCount() && scratch.rotation.size() == pointCount(),
+                "the points are placed");
   scratch.along.assign(pointCount(), 0.f);
   volume_.restore(scratch.joints, scratch.position, scratch.along);
   muscles_.swell(scratch.joints, scratch.along);
@@ -82,6 +90,7 @@ void PoseSkin::evaluate(std::span<const Transform> motion, const Moment& moment,
                         VectorArray& out) const {
   const std::size_t count = pointCount();
   const Vec3 origin = placeJoints(motion, scratch);
+  FASCIA_ASSERT(out.size() >= count, "a place for each point");
   scratch.position.resize(count);
   scratch.turn.resize(count);
   scratch.rotation.resize(count);

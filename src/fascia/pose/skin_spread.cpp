@@ -1,9 +1,12 @@
 #include <fascia/pose/skin_spread.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 SkinSpread::SkinSpread(const PoseMesh& mesh, const LimbParts& parts) {
   constexpr double kReach = 0.35;  // square of the smoothing length, in local radii
+  FASCIA_ASSERT(parts.radius_m.size() == mesh.size(), "a radius for each point");
   std::vector<Eigen::Triplet<double>> entries;
   for (std::uint32_t i = 0; i < mesh.size(); ++i) {
     const int row = static_cast<int>(i);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -23,6 +25,7 @@ std::vector<bool> jointsWithSkin(const RiggedModel& model) {
 }
 
 double lastFrame_s(const SampledMotion& motion) {
+  FASCIA_ASSERT(motion.frameCount() > 0, "a motion has frames");
   return static_cast<double>(motion.frameCount() - 1) / motion.rate_hz;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include <fascia/base/assert.h>
 #include <fascia/rig/joint_meaning.h>
 
 namespace fascia {
@@ -74,6 +75,7 @@ class Joints {
 };
 
 Transform restInParent(const RiggedModel& model, std::size_t joint) {
+  FASCIA_ASSERT(joint < model.joints.size(), "the joint exists");
   const RigJoint& j = model.joints[joint];
   if (j.parent < 0) return j.rest_world;
   return model.joints[static_cast<std::size_t>(j.parent)].rest_world.inverse() * j.rest_world;

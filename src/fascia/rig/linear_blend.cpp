@@ -1,11 +1,14 @@
 #include <fascia/rig/linear_blend.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 LinearBlend::LinearBlend(const RiggedModel& model)
     : weights_(model.weights), rest_(model.points_m), matrices_(model.joints.size()) {}
 
 void LinearBlend::deform(std::span<const Transform> motion, std::span<Eigen::Vector3f> points) {
+  FASCIA_ASSERT(!motion.empty(), "joints move");
   for (std::size_t j = 0; j < matrices_.size(); ++j) {
     matrices_[j].setIdentity();
     matrices_[j].topLeftCorner<3, 3>() = motion[j].rotation.cast<float>();

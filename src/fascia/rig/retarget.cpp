@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/error.h>
 #include <fascia/base/index.h>
 #include <fascia/base/suggest.h>
@@ -58,6 +59,7 @@ std::vector<DrivenJoint> drivenJoints(const MotionFigure& source, const RiggedMo
 
 // The turn about an axis that is part of a rotation (swing-twist decomposition).
 Quat twistAbout(const Quat& rotation, const Vec3& axis) {
+  FASCIA_ASSERT(isUnit(axis), "one turns about a direction");
   const Vec3 along = axis * rotation.vec().dot(axis);
   const Quat twist(rotation.w(), along.x(), along.y(), along.z());
   return twist.norm() < 1e-9 ? Quat::Identity() : twist.normalized();

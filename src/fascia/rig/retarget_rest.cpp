@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -75,6 +77,7 @@ Vec3 perpendicular(const Vec3& v, const Vec3& normal) {
 }  // namespace
 
 Mat3 shortestArc(const Vec3& from, const Vec3& to) {
+  FASCIA_ASSERT(from.allFinite() && to.allFinite(), "directions are finite");
   if (from.squaredNorm() == 0 || to.squaredNorm() == 0) return Mat3::Identity();
   return Quat::FromTwoVectors(from, to).normalized().toRotationMatrix();
 }

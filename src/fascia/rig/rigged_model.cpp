@@ -1,8 +1,11 @@
 #include <fascia/rig/rigged_model.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 void poseRig(const RiggedModel& model, int motion, double time_s, std::vector<Transform>& world) {
+  FASCIA_ASSERT(motion < static_cast<int>(model.motions.size()), "the motion exists");
   const std::size_t count = model.joints.size();
   world.resize(count);
   if (motion < 0) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/skeleton/euler.h>
 #include <fascia/skeleton/skeleton_validation.h>
 
@@ -66,6 +67,8 @@ Posture Skeleton::restPosture() const {
 }
 
 void Skeleton::clampToLimits(Posture& posture) const {
+  FASCIA_ASSERT(posture.values.size() == valueCount() && posture.rates.size() == valueCount(),
+                "the posture is of this skeleton");
   for (std::size_t i = 0; i < valueDofs_.size(); ++i) {
     const DofDef& dof = valueDofs_[i];
     double& value = posture.values[i];
@@ -95,6 +98,8 @@ Skeleton::Local Skeleton::local(std::size_t joint, const Posture& posture) const
 }
 
 void Skeleton::pose(const Posture& posture, PosedSkeleton& out) const {
+  FASCIA_ASSERT(posture.values.size() == valueCount() && posture.rates.size() == valueCount(),
+                "the posture is of this skeleton");
   out.joint_world.resize(joints_.size());
   out.twist_world.resize(joints_.size());
   auto turn = posture.rotations.begin();
@@ -102,6 +107,7 @@ void Skeleton::pose(const Posture& posture, PosedSkeleton& out) const {
     Transform base = restFrames_[i];  // where the joint would be at zero
     Twist carried;                    // what the parent's motion does to it
     if (parents_[i].valid()) {
+      FASCIA_ASSERT(parents_[i].index() < i, "parents come before their children");
       base = out.joint_world[parents_[i].index()] * base;
       carried = out.twist_world[parents_[i].index()];
     }
@@ -116,6 +122,7 @@ void Skeleton::pose(const Posture& posture, PosedSkeleton& out) const {
     out.joint_world[i] = {base.rotation * rotation, origin_m};
     out.twist_world[i] = {carried.at(origin_m) + base.vector(own.linear_m_per_s),
                           carried.angular_rad_per_s + base.vector(spin_rad_per_s), origin_m};
+    FASCIA_ASSERT(out.joint_world[i].translation_m.allFinite(), "a joint is somewhere");
   }
 }
 

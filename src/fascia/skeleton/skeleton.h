@@ -8,6 +8,7 @@
 
 #include <fascia/base/error.h>
 #include <fascia/base/ids.h>
+#include <fascia/base/tunable.h>
 #include <fascia/math/types.h>
 
 namespace fascia {
@@ -21,19 +22,35 @@ std::optional<Dof> dofFromName(std::string_view text);
 
 struct DofDef {
   Dof dof = Dof::rx;
-  double min = -1e9, max = 1e9;  // metre or radian, [-1e9, 1e9]
-  double rest = 0;               // value in the rest posture, within [min, max] and [-1e6, 1e6]
+  double min = -1e9, max = 1e9;  // metre or radian; these two stand for "no limit"
+  double rest = 0;               // value in the rest posture, within [min, max]
 };
+// Limits, and values at rest and of keys.
+inline constexpr TunableInfo kDofAngle{
+    "rx, ry, rz", "deg", {-36000, 36000}, "Turning about an axis: limits, rest and keys"};
+inline constexpr TunableInfo kDofShift{
+    "tx, ty, tz", "m", {-1e6, 1e6}, "Moving along an axis: limits, rest and keys"};
+constexpr const TunableInfo& dofInfo(Dof dof) {
+  return isRotation(dof) ? kDofAngle : kDofShift;
+}
 
 // A joint's frame in its parent's: translate by offset, turn by orientation, then by its own
 // degrees of freedom: translation (tx,ty,tz), then Rz·Ry·Rx.
 struct JointDef {
   std::string name;    // unique
   std::string parent;  // empty = the root; parents come before children, and there is one root
-  Vec3 offset_m = Vec3::Zero();         // each within [-1e6, 1e6]
+  Vec3 offset_m = Vec3::Zero();
   Vec3 orientation_rad = Vec3::Zero();  // intrinsic Rz·Ry·Rx
   std::vector<DofDef> dofs;             // any subset of the six
 };
+constexpr auto tunables(const JointDef*) {
+  return std::tuple{
+      tunable(&JointDef::offset_m, "offset_m", "m", {-1e6, 1e6}, "From the parent's origin"),
+      tunable(&JointDef::orientation_rad, "orientation_deg", "deg", {-36000, 36000},
+              "Turns about x, y, z at rest; applied as Rz Ry Rx")};
+}
+// More than any figure has; bounds what a hostile file can cost.
+inline constexpr std::size_t kMostJoints = 1024;
 
 struct SkeletonDef {
   std::vector<JointDef> joints;

@@ -10,29 +10,25 @@
 namespace fascia {
 namespace {
 
-constexpr double kLargestNumber = 1e6;  // no metre or radian of a figure is larger
-constexpr double kWidestLimit = 1e9;    // stands for "no limit"
-
 using JointIndices = std::map<std::string_view, std::size_t>;
 
-bool within(double number, double bound) {
-  return number >= -bound && number <= bound;  // false for NaN
-}
-
-bool within(const Vec3& v, double bound) {
-  return within(v.x(), bound) && within(v.y(), bound) && within(v.z(), bound);
+// Limits may be "none", which no other value of that size is.
+void validateLimit(const DofDef& def, double limit, const std::string& pointer,
+                   Diagnostics& diagnostics) {
+  if (limit == DofDef{}.min || limit == DofDef{}.max) return;
+  checkNumber(dofInfo(def.dof), limit, pointer, diagnostics);
 }
 
 void validateDof(const DofDef& def, const std::string& pointer, Diagnostics& diagnostics) {
-  if (!within(def.min, kWidestLimit) || !within(def.max, kWidestLimit)) {
-    diagnostics.error(pointer, "limits: found [" + shortNumber(def.min) + ", " +
-                                   shortNumber(def.max) + "], expected finite numbers");
-  } else if (def.min > def.max) {
+  const std::size_t errorsBefore = diagnostics.errors().size();
+  const std::string unit = isRotation(def.dof) ? "_deg" : "_m";
+  validateLimit(def, def.min, pointer + "/min" + unit, diagnostics);
+  validateLimit(def, def.max, pointer + "/max" + unit, diagnostics);
+  checkNumber(dofInfo(def.dof), def.rest, pointer + "/rest" + unit, diagnostics);
+  if (diagnostics.errors().size() > errorsBefore) return;
+  if (def.min > def.max) {
     diagnostics.error(pointer, "limits: the minimum " + shortNumber(def.min) +
                                    " is above the maximum " + shortNumber(def.max));
-  } else if (!within(def.rest, kLargestNumber)) {
-    diagnostics.error(
-        pointer, "rest: found " + shortNumber(def.rest) + ", expected a number in [-1e6, 1e6]");
   } else if (def.rest < def.min || def.rest > def.max) {
     diagnostics.error(pointer, "rest: " + shortNumber(def.rest) + " lies outside the limits [" +
                                    shortNumber(def.min) + ", " + shortNumber(def.max) + "]");
@@ -40,12 +36,7 @@ void validateDof(const DofDef& def, const std::string& pointer, Diagnostics& dia
 }
 
 void validateJoint(const JointDef& joint, const std::string& pointer, Diagnostics& diagnostics) {
-  if (!within(joint.offset_m, kLargestNumber)) {
-    diagnostics.error(pointer + "/offset_m", "expected finite numbers in [-1e6, 1e6]");
-  }
-  if (!within(joint.orientation_rad, kLargestNumber)) {
-    diagnostics.error(pointer + "/orientation_deg", "expected finite numbers in [-1e6, 1e6]");
-  }
+  validateTunables(joint, pointer, diagnostics);
   std::array<bool, 6> seen{};
   for (const DofDef& dof : joint.dofs) {
     const std::string dofPointer = pointer + "/dofs/" + std::string(name(dof.dof));

@@ -8,7 +8,8 @@
 namespace fascia {
 namespace {
 
-// Speeds below this do not count as relative errors of the velocity iteration (L8: v_threshold).
+// Speeds below this do not count as relative errors of the velocity iteration: v^threshold
+// of Turner & Gobbetti 1998, eq. 8.
 constexpr double kSpeedThreshold_m_per_s = 0.1;
 
 StepperOptions optionsOf(const Skin& skin) {

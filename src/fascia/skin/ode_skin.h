@@ -8,7 +8,8 @@
 namespace fascia {
 
 // A skin as the solver library sees it: the paper's equation of motion with all its forces, and
-// non-penetration after every accepted step (spec L7–L10). Coordinate 3p + c for point p.
+// non-penetration after every accepted step (Turner & Gobbetti 1998, §4.2). Coordinate 3p + c for
+// point p.
 class OdeSkin final : public SecondOrderSystem {
  public:
   explicit OdeSkin(const Skin& skin);

@@ -61,7 +61,8 @@ struct SkinPose {
 struct CarryScratch;
 struct RiggedSkin;
 
-// A constant elastic skin: geometry of rest, material, anchors. Spec L2–L6, L14, L21.
+// A constant elastic skin: geometry of rest, material, anchors (Turner & Gobbetti 1998,
+// §3 and §4.1).
 class Skin {
  public:
   // Reports every fault of `def` with pointers below `pointer`; with errors the result must not be
@@ -211,7 +212,8 @@ void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double
 // afresh, outside of the step.
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats);
 
-// The same grid surface at another resolution (spec L18), at any moment of a run.
+// The same grid surface at another resolution (Turner & Gobbetti 1998, §6.5), at any
+// moment of a run.
 SkinState resampled(const Skin& from, const SkinState& state, const Skin& to);
 
 // The surface of a state for display and export; vertex order and triangles are the same in every

@@ -5,40 +5,80 @@
 #include <string>
 #include <vector>
 
+#include <fascia/base/tunable.h>
 #include <fascia/math/types.h>
 
 namespace fascia {
 
 // Everything a person tunes about a skin. All amounts are per square metre of rest surface, so that
-// they mean the same at every resolution. Ranges are checked by the file reader and the builder.
+// they mean the same at every resolution. Units, ranges and help are in the tables.
 
 struct SkinMaterialDef {
-  double density_kg_per_m2 = 4;    // [0.01, 1000]; heavier: more follow-through
-  double stretch_u_N_per_m = 150;  // (0, 1e6], around the tube (u1)
-  double stretch_v_N_per_m = 150;  // (0, 1e6], along the tube (u2)
-  double shear_N_per_m = 60;       // [0, 1e6]
-  double bending_Nm = 0;           // [0, 1e3]; 0 = the paper's pure membrane
-  double drag_Ns_per_m3 = 4;       // [0, 1e5]; the global damping −γ v
-  double prestretch = 1.08;        // [0.5, 3]; > 1: the skin is a taut stocking
-  double max_stretch = 1.4;        // [1.01, 4]; beyond it the stress no longer grows
-  double friction_per_s = 8;       // [0, 1e4]; rate at which sliding on flesh dies away
-  double restitution = 0;          // [0, 1]; the paper's k_n: bounce off the flesh
+  double density_kg_per_m2 = 4;
+  double stretch_u_N_per_m = 150, stretch_v_N_per_m = 150;
+  double shear_N_per_m = 60;
+  double bending_Nm = 0;      // 0 = the paper's pure membrane
+  double drag_Ns_per_m3 = 4;  // the paper's global damping −γ v
+  double prestretch = 1.08;
+  double max_stretch = 1.4;
+  double friction_per_s = 8;
+  double restitution = 0;  // the paper's k_n
 };
+constexpr auto tunables(const SkinMaterialDef*) {
+  using M = SkinMaterialDef;
+  return std::tuple{
+      tunable(&M::density_kg_per_m2, "density_kg_per_m2", "kg/m²", {0.01, 1000},
+              "Heavier: more follow-through"),
+      // Softer than this, and what holds the skin together is lost in rounding.
+      tunable(&M::stretch_u_N_per_m, "stretch_u_N_per_m", "N/m", {1e-3, 1e6},
+              "Stiffness around the tube"),
+      tunable(&M::stretch_v_N_per_m, "stretch_v_N_per_m", "N/m", {1e-3, 1e6},
+              "Stiffness along the tube"),
+      tunable(&M::shear_N_per_m, "shear_N_per_m", "N/m", {0, 1e6}, "Stiffness against shear"),
+      tunable(&M::bending_Nm, "bending_Nm", "N m", {0, 1e3}, "0: a pure membrane"),
+      tunable(&M::drag_Ns_per_m3, "drag_Ns_per_m3", "N s/m³", {0, 1e5}, "Damps all motion"),
+      tunable(&M::prestretch, "prestretch", "", {0.5, 3}, "Above 1: a taut stocking"),
+      tunable(&M::max_stretch, "max_stretch", "", {1.01, 4},
+              "Beyond it the stress no longer grows"),
+      tunable(&M::friction_per_s, "friction_per_s", "1/s", {0, 1e4},
+              "Rate at which sliding on flesh dies away"),
+      tunable(&M::restitution, "restitution", "", {0, 1}, "Bounce off the flesh")};
+}
 
 struct SkinFatDef {
-  double thickness_m = 0.01;  // [0, 1]; of an imported mesh: at most, what lies between mesh and
-                              // flesh counts
-  double compressible = 0;    // [0, 0.95]; share of the thickness that pressing can take away
-  double bulk_Pa = 0;         // [0, 1e5]; resistance of each solid's fat to a change of its volume
+  double thickness_m = 0.01;
+  double compressible = 0;
+  double bulk_Pa = 0;
 };
+constexpr auto tunables(const SkinFatDef*) {
+  using F = SkinFatDef;
+  return std::tuple{
+      tunable(&F::thickness_m, "thickness_m", "m", {0, 1},
+              "Its thickness; on a rig at most, and never more than lies between mesh and flesh"),
+      tunable(&F::compressible, "compressible", "", {0, 0.95},
+              "No effect: of older files, whose fat gave way"),
+      tunable(&F::bulk_Pa, "bulk_Pa", "Pa", {0, 1e5},
+              "Of a simulated rig: resistance of each solid's fat to a change of its volume")};
+}
 
 struct SkinTissueDef {
-  double stiffness_N_per_m3 = 4000;     // [0, 1e8]; pull per metre beyond rest, per square metre
-  double damping_Ns_per_m3 = 60;        // [0, 1e6]
-  std::optional<double> rest_length_m;  // [0, 1]; none = the length at attachment
-  double carry = 0;  // [0, 1]; share of its anchor's changes of velocity that a point takes over at
-                     // once: 0 shakes like jelly, 1 not at all
+  double stiffness_N_per_m3 = 4000;
+  double damping_Ns_per_m3 = 60;
+  std::optional<double> rest_length_m;
+  double carry = 0;
 };
+constexpr auto tunables(const SkinTissueDef*) {
+  using T = SkinTissueDef;
+  return std::tuple{
+      tunable(&T::stiffness_N_per_m3, "stiffness_N_per_m3", "N/m³", {0, 1e8},
+              "Pull per metre beyond rest, per square metre"),
+      tunable(&T::damping_Ns_per_m3, "damping_Ns_per_m3", "N s/m³", {0, 1e6},
+              "Damping along a strand"),
+      tunable(&T::carry, "carry", "", {0, 1},
+              "Share of the flesh's changes of velocity that the skin takes over at once: 0 shakes "
+              "like jelly, 1 not at all"),
+      tunable(&T::rest_length_m, "rest_length_m", "m", {0, 1}, "None: the length at attachment")};
+}
 
 // One end of the tube: a small ring of points fixed to a joint.
 struct SkinEndDef {
@@ -46,8 +86,16 @@ struct SkinEndDef {
   Vec3 position_m = Vec3::Zero();  // in the joint's frame; the ring's centre lies on the flesh
                                    // surface on the ray from here along axis
   Vec3 axis = Vec3::Zero();        // in the joint's frame; zero = away from the other end
-  double radius_m = 0;             // of the ring; 0 = 0.022 of the distance of the two ends
+  double radius_m = 0;
 };
+constexpr auto tunables(const SkinEndDef*) {
+  using E = SkinEndDef;
+  return std::tuple{tunable(&E::position_m, "position_m", "m", {-1e6, 1e6}, "In the joint's frame"),
+                    tunable(&E::axis, "axis", "", {-1e6, 1e6},
+                            "Towards the end, in the joint's frame; none: away from the other end"),
+                    tunable(&E::radius_m, "radius_m", "m", {0, 1000},
+                            "Of the ring; 0: 0.022 of the distance of the two ends")};
+}
 
 // The named per-point quantities that region edits and brushes change.
 enum class SkinQuantity {
@@ -68,48 +116,88 @@ enum class SkinQuantity {
   tightness
 };
 
-// How an imported mesh follows its joints (pose_skin.h); each in [0, 1].
+// How an imported mesh follows its joints (pose_skin.h).
 struct SkinPoseDef {
-  double jiggle = 0.5;     // flesh that moves by itself: 0 none, 0.5 as flesh is, 1 jelly
-  double muscle = 0.3;     // flexors that swell in a bend: 0 none, 0.3 natural, 1 bodybuilder
-  double volume = 0.9;     // share of what a bend takes from a joint that comes out around it
-  double tightness = 0.5;  // how far the skin evens out: 0 slack, 1 taut
-  // Beyond the pose: elastic skin with the material and tissue below is simulated, its strands'
-  // inner ends where the pose function has the mesh.
+  double jiggle = 0.5;
+  double muscle = 0.3;
+  double volume = 0.9;
+  double tightness = 0.5;
+  // The strands' inner ends are where the pose function has the mesh.
   bool simulate = false;
 };
+constexpr auto tunables(const SkinPoseDef*) {
+  using P = SkinPoseDef;
+  return std::tuple{
+      tunable(&P::jiggle, "jiggle", "", {0, 1},
+              "Flesh that moves by itself: 0 none, 0.5 as flesh is, 1 jelly"),
+      tunable(&P::muscle, "muscle", "", {0, 1},
+              "Flexors that swell in a bend: 0 none, 0.3 natural, 1 bodybuilder"),
+      tunable(&P::volume, "volume", "", {0, 1},
+              "Share of what a bend takes from a joint that comes out around it"),
+      tunable(&P::tightness, "tightness", "", {0, 1},
+              "How far the skin evens out: 0 slack, 1 taut"),
+      tunable(&P::simulate, "simulate",
+              "Beyond the pose: elastic skin of the material and tissue here hangs on it")};
+}
 
 // A named part of the skin in material coordinates, and what differs there.
 struct SkinRegionDef {
   struct Edit {
     SkinQuantity quantity;
     enum class Mode { set, scale, add } mode = Mode::set;
-    double value = 0;  // the quantity's unit; scale: a factor
+    double value = 0;
   };
   std::string name;
-  double u_min = 0, u_max = 1;  // around, in [0, 1]; u_min > u_max wraps around
+  double u_min = 0, u_max = 1;  // around; u_min > u_max wraps around
   double v_min = 0, v_max = 1;  // along, from the bottom end (0) to the top end (1)
   std::string solid;            // if given: instead, all points anchored to this solid
   std::string joint;            // of an imported mesh, if given: instead, by the joint's weights
-  double feather = 0.05;        // [0, 0.5]; width of the smooth border in u and v
+  double feather = 0.05;
   std::vector<Edit> edits;
 };
+constexpr auto tunables(const SkinRegionDef::Edit*) {
+  return std::tuple{tunable(&SkinRegionDef::Edit::value, "value", "", {-1e8, 1e8},
+                            "In the quantity's SI unit; scale: a factor")
+                        .required()};
+}
+constexpr auto tunables(const SkinRegionDef*) {
+  return std::tuple{tunable(&SkinRegionDef::feather, "feather", "", {0, 0.5},
+                            "Width of the smooth border in u and v")};
+}
+inline constexpr TunableInfo kRegionU{
+    "u", "", {0, 1}, "Around, [from, to] in 0 to 1; from > to wraps around"};
+inline constexpr TunableInfo kRegionV{
+    "v", "", {0, 1}, "Along, [from, to] from the bottom end (0) to the top (1)"};
 
 // A Gaussian dab, as the paper's liposuction tool leaves it.
 struct SkinBrushDef {
   SkinQuantity quantity = SkinQuantity::fat;
   Vec3 center_m = Vec3::Zero();  // in `joint`'s frame in the rest posture; acts on nearby points
   std::string joint;
-  double radius_m = 0.1;  // one standard deviation
-  double amount = 0;      // added at the centre; the result never falls below 0
+  double radius_m = 0.1;
+  double amount = 0;
 };
+constexpr auto tunables(const SkinBrushDef*) {
+  using B = SkinBrushDef;
+  return std::tuple{
+      tunable(&B::center_m, "center_m", "m", {-1e6, 1e6}, "In the joint's frame, rest posture"),
+      tunable(&B::radius_m, "radius_m", "m", {1e-6, 1000}, "One standard deviation"),
+      tunable(&B::amount, "amount", "", {-1e8, 1e8}, "Added at the centre; never below 0")};
+}
 
 // One end point of a tissue strand, moved by hand.
 struct SkinAnchorDef {
   double u = 0, v = 0;  // the skin point nearest to these material coordinates
   std::string solid;
-  Vec3 position_m = Vec3::Zero();  // in the solid's frame, put onto its surface
+  Vec3 position_m = Vec3::Zero();
 };
+constexpr auto tunables(const SkinAnchorDef*) {
+  using A = SkinAnchorDef;
+  return std::tuple{tunable(&A::u, "u", "", {0, 1}, "Around").required(),
+                    tunable(&A::v, "v", "", {0, 1}, "Along").required(),
+                    tunable(&A::position_m, "position_m", "m", {-1e6, 1e6},
+                            "In the solid's frame; put onto its surface")};
+}
 
 // Per-point values that replace the defaults above, row by row from the bottom end: what a studio
 // saves after sculpting. Each list is empty, or has columns x rows entries (anchors: see skin.h).
@@ -123,11 +211,16 @@ struct SkinPointsDef {
   std::vector<std::array<float, 3>> rest_position_m;  // world, rest posture
 };
 
-// The skin against itself (spec L22).
+// The skin against itself.
 struct SkinContactDef {
   bool self = false;
-  double gap_m = 0.002;  // (0, 1]; kept between two sheets of skin
+  double gap_m = 0.002;
 };
+constexpr auto tunables(const SkinContactDef*) {
+  using C = SkinContactDef;
+  return std::tuple{tunable(&C::self, "self", "Whether sheets of skin keep out of each other"),
+                    tunable(&C::gap_m, "gap_m", "m", {1e-9, 1}, "Kept between two of them")};
+}
 
 // What becomes of a piece of an imported mesh, named by its part or material.
 struct SkinPartDef {
@@ -136,15 +229,18 @@ struct SkinPartDef {
   // are, unless a rule with false makes them skin.
   bool rigid = true;
 };
+constexpr auto tunables(const SkinPartDef*) {
+  return std::tuple{tunable(&SkinPartDef::rigid, "rigid", "Carried by its joints as it is")};
+}
 
 struct SkinDef {
-  int columns = 32, rows = 32;  // [8, 4096] each; columns go around, rows from bottom to top
+  int columns = 32, rows = 32;  // columns go around, rows from bottom to top
   SkinEndDef bottom, top;
   SkinMaterialDef material;
   SkinFatDef fat;
   SkinTissueDef tissue;
-  SkinPoseDef pose;    // of an imported mesh
-  double cling = 0.3;  // [0, 1]; shrink-wrap: 0 spans hollows like a stocking, 1 fills every valley
+  SkinPoseDef pose;  // of an imported mesh
+  double cling = 0.3;
   std::string texture;  // PNG or JPEG beside the character file; empty = color
   std::array<float, 3> color{0.86f, 0.66f, 0.56f};  // sRGB
   std::vector<SkinRegionDef> regions;
@@ -154,5 +250,15 @@ struct SkinDef {
   SkinContactDef contact;
   std::vector<SkinPartDef> parts;  // of an imported mesh
 };
+constexpr auto tunables(const SkinDef*) {
+  return std::tuple{
+      tunable(&SkinDef::cling, "cling", "", {0, 1},
+              "How far the skin follows hollows: 0 spans them like a stocking, 1 fills every "
+              "valley")};
+}
+// Each of columns and rows; and how many points both make.
+inline constexpr TunableInfo kGridSide{
+    "grid", "", {8, 4096}, "[columns around, rows along]; whole numbers, at most 1048576 points"};
+inline constexpr int kMostGridPoints = 1 << 20;
 
 }  // namespace fascia

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/skin_parts.h>
 
@@ -22,6 +23,7 @@ double inRange(double x, double low, double high, double feather, bool periodic)
 }
 
 float shareOf(const SkinRegionDef& region, SolidId solid, int joint, const EditPoint& p) {
+  FASCIA_ASSERT(joint < 0 || p.weights, "a rig's points have weights");
   if (joint >= 0) {
     float share = 0;
     for (std::size_t k = 0; k < PointWeights::kMost; ++k)
@@ -91,7 +93,6 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
   for (std::size_t n = 0; n < def.brushes.size(); ++n) {
     const SkinBrushDef& brush = def.brushes[n];
     const std::string where = "/brushes/" + std::to_string(n);
-    report.checkRange(where + "/radius_m", brush.radius_m, 1e-6, 1e6);
     Vec3 center = brush.center_m;
     if (!brush.joint.empty()) {
       const JointId joint = report.findJoint(where + "/joint", brush.joint);
@@ -107,7 +108,8 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
   }
   for (const QuantityInfo& i : quantityInfos())
     for (float& v : quantities[i.quantity])
-      v = std::clamp(v, static_cast<float>(i.min), static_cast<float>(i.max));
+      v = std::clamp(v, static_cast<float>(i.uniform.range.min),
+                     static_cast<float>(i.uniform.range.max));
 }
 
 }  // namespace fascia

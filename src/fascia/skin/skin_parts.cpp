@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/suggest.h>
 
 namespace fascia {
@@ -10,41 +11,39 @@ void SkinReport::error(const std::string& where, std::string message, std::strin
   diagnostics_.error(pointer_ + where, std::move(message), std::move(hint));
 }
 
-void SkinReport::checkRange(const std::string& where, double value, double low, double high) const {
-  if (value >= low && value <= high) return;  // false for NaN
-  error(where, "found " + std::to_string(value) + ", expected a number from " +
-                   std::to_string(low) + " to " + std::to_string(high));
+bool SkinReport::checkSide(const std::string& where, int side) const {
+  checkWhole(kGridSide, side, pointer_ + where, diagnostics_);
+  return kGridSide.range.contains(static_cast<double>(side));
 }
 
 void SkinReport::checkValues(const SkinDef& def) const {
-  static constexpr std::pair<SkinQuantity, const char*> kWhere[] = {
-      {SkinQuantity::density, "/material/density_kg_per_m2"},
-      {SkinQuantity::stretch_u, "/material/stretch_u_N_per_m"},
-      {SkinQuantity::stretch_v, "/material/stretch_v_N_per_m"},
-      {SkinQuantity::shear, "/material/shear_N_per_m"},
-      {SkinQuantity::bending, "/material/bending_Nm"},
-      {SkinQuantity::drag, "/material/drag_Ns_per_m3"},
-      {SkinQuantity::prestretch, "/material/prestretch"},
-      {SkinQuantity::fat, "/fat/thickness_m"},
-      {SkinQuantity::tissue_stiffness, "/tissue/stiffness_N_per_m3"},
-      {SkinQuantity::tissue_damping, "/tissue/damping_Ns_per_m3"},
-      {SkinQuantity::tissue_rest_length, "/tissue/rest_length_m"},
-      {SkinQuantity::jiggle, "/pose/jiggle"},
-      {SkinQuantity::muscle, "/pose/muscle"},
-      {SkinQuantity::volume, "/pose/volume"},
-      {SkinQuantity::tightness, "/pose/tightness"}};
-  for (const auto& [quantity, where] : kWhere)
-    checkRange(where, uniformValue(def, quantity), info(quantity).min, info(quantity).max);
-  checkRange("/material/max_stretch", def.material.max_stretch, 1.01, 4);
-  checkRange("/material/friction_per_s", def.material.friction_per_s, 0, 1e4);
-  checkRange("/material/restitution", def.material.restitution, 0, 1);
-  checkRange("/cling", def.cling, 0, 1);
+  const auto check = [this](const auto& part, const std::string& where) {
+    validateTunables(part, pointer_ + where, diagnostics_);
+  };
+  check(def, "");
+  check(def.material, "/material");
+  check(def.fat, "/fat");
+  check(def.tissue, "/tissue");
+  check(def.pose, "/pose");
+  check(def.contact, "/contact");
+  check(def.bottom, "/bottom");
+  check(def.top, "/top");
   for (std::size_t i = 0; i < def.brushes.size(); ++i)
-    checkRange("/brushes/" + std::to_string(i) + "/radius_m", def.brushes[i].radius_m, 1e-6, 1e6);
-  checkRange("/tissue/carry", def.tissue.carry, 0, 1);
-  checkRange("/fat/compressible", def.fat.compressible, 0, 0.95);
-  checkRange("/fat/bulk_Pa", def.fat.bulk_Pa, 0, 1e5);
-  checkRange("/contact/gap_m", def.contact.gap_m, 1e-9, 1);
+    check(def.brushes[i], entryOf("/brushes", i));
+  for (std::size_t i = 0; i < def.anchors.size(); ++i)
+    check(def.anchors[i], entryOf("/anchors", i));
+  for (std::size_t i = 0; i < def.regions.size(); ++i) checkRegion(def.regions[i], i);
+}
+
+void SkinReport::checkRegion(const SkinRegionDef& region, std::size_t index) const {
+  const std::string at = pointer_ + entryOf("/regions", index);
+  validateTunables(region, at, diagnostics_);
+  checkNumber(kRegionU, region.u_min, at + "/u/0", diagnostics_);
+  checkNumber(kRegionU, region.u_max, at + "/u/1", diagnostics_);
+  checkNumber(kRegionV, region.v_min, at + "/v/0", diagnostics_);
+  checkNumber(kRegionV, region.v_max, at + "/v/1", diagnostics_);
+  for (std::size_t i = 0; i < region.edits.size(); ++i)
+    validateTunables(region.edits[i], entryOf(at + "/edits", i), diagnostics_);
 }
 
 bool SkinReport::checkPointLists(const SkinPointsDef& p, std::size_t count,
@@ -59,10 +58,11 @@ bool SkinReport::checkPointLists(const SkinPointsDef& p, std::size_t count,
   };
   for (const QuantityInfo& i : quantityInfos()) {
     const std::vector<float>& values = pointValues(p, i.quantity);
-    check(values.size(), i.name);
+    check(values.size(), i.listKey);
     for (const float v : values) {
-      if (v >= static_cast<float>(i.min) && v <= static_cast<float>(i.max)) continue;
-      checkRange("/points/" + std::string(i.name), v, i.min, i.max);
+      if (i.uniform.range.contains(v)) continue;
+      error("/points/" + std::string(i.listKey),
+            "found " + shortestText(v) + ", expected " + i.uniform.range.text());
       ok = false;
       break;
     }
@@ -114,6 +114,9 @@ NearestFlesh nearestFlesh(const Field& field, const Vec3& p) {
 PointModel makePointModel(const PointModelInput& in) {
   const SkinQuantities& q = in.quantities;
   const auto least = static_cast<float>(in.leastArea_m2);
+  FASCIA_ASSERT(in.stiffness.size() == in.area.size(), "a stiffness for each point");
+  FASCIA_ASSERT(areBelow(in.points, in.area.size()) && areBelow(in.tied, in.area.size()),
+                "points of the skin");
   PointModel p;
   for (FloatArray* a : {&p.mass, &p.drag, &p.fat, &p.tissueStiffness, &p.tissueDamping,
                         &p.tissueRestLength, &p.free})

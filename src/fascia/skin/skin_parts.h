@@ -16,7 +16,8 @@ class SkinReport {
       : base_(base), pointer_(std::move(pointer)), diagnostics_(diagnostics) {}
 
   void error(const std::string& where, std::string message, std::string hint = {}) const;
-  void checkRange(const std::string& where, double value, double low, double high) const;
+  // Of a grid: columns or rows.
+  bool checkSide(const std::string& where, int side) const;
   // Everything that has a range, whatever the skin lies on.
   void checkValues(const SkinDef& def) const;
   // Saved per-point lists: `count` values within their ranges each, or none.
@@ -26,6 +27,8 @@ class SkinReport {
   SolidId findSolid(const std::string& where, const std::string& name) const;
 
  private:
+  void checkRegion(const SkinRegionDef& region, std::size_t index) const;
+
   const SkinBase& base_;
   std::string pointer_;
   Diagnostics& diagnostics_;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <fascia/base/assert.h>
 #include <fascia/skin/contact/flesh_contact.h>
 #include <fascia/skin/grid/resample.h>
 #include <fascia/skin/mesh/rigged_skin.h>
@@ -20,6 +21,10 @@ namespace {
 
 // A pose's joints as the rig's: rest -> now.
 void rigMotion(const RiggedSkin& rigged, const SkinPose& pose, std::vector<Transform>& motion) {
+  FASCIA_ASSERT(
+      std::ranges::all_of(rigged.joints,
+                          [&](const auto& j) { return j.skeletonJoint < pose.joints.size(); }),
+      "the pose has the rig's joints");
   motion.clear();
   for (const RiggedSkin::Joint& j : rigged.joints)
     motion.push_back(pose.joints[j.skeletonJoint] * j.inverseRest);
@@ -29,6 +34,7 @@ void rigMotion(const RiggedSkin& rigged, const SkinPose& pose, std::vector<Trans
 
 void evaluateRigged(const RiggedSkin& rigged, const SkinPose& pose, double dt_s,
                     JiggleState* jiggle, CarryScratch& scratch, VectorArray& out) {
+  FASCIA_ASSERT(pose.field && rigged.skin, "a rig is posed on flesh");
   rigMotion(rigged, pose, scratch.motion);
   PoseObstacles obstacles{pose.field, rigged.fleshSolids};
   rigged.skin->evaluate(scratch.motion, {dt_s, jiggle, &obstacles}, scratch.pose, out);
@@ -36,6 +42,7 @@ void evaluateRigged(const RiggedSkin& rigged, const SkinPose& pose, double dt_s,
 }
 
 void Skin::placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
+  FASCIA_ASSERT(out.size() >= topology_->storage(), "a place for each point");
   if (isGrid()) {
     anchors_.place(*pose.field, scratch.points, out);
     return;
@@ -51,6 +58,7 @@ void Skin::placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray
 }
 
 void Skin::placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
+  FASCIA_ASSERT(out.size() >= topology_->storage(), "a place for each point");
   if (!isGrid())
     for (const std::size_t k : fixedPoints_)
       for (const auto axis : VectorArray::kAxes) (out.*axis)[k] = (scratch.points.*axis)[k];
@@ -63,6 +71,7 @@ void Skin::placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& 
 }
 
 void Skin::placeAll(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const {
+  FASCIA_ASSERT(out.size() >= topology_->storage(), "a place for each point");
   if (isGrid()) {
     carriers_.place(*pose.field, scratch.points, out);
   } else {
@@ -103,6 +112,8 @@ void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state,
 }
 
 SkinState resampled(const Skin& from, const SkinState& state, const Skin& to) {
+  FASCIA_ASSERT(from.isGrid() && to.isGrid(), "only grids change their resolution");
+  FASCIA_ASSERT(state.position.size() == from.topology().storage(), "the state is of this skin");
   SkinState out;
   out.position = resample(from.layout(), state.position, to.layout());
   out.velocity = resample(from.layout(), state.velocity, to.layout());
@@ -111,6 +122,7 @@ SkinState resampled(const Skin& from, const SkinState& state, const Skin& to) {
 }
 
 void skinSurface(const Skin& skin, const SkinState& state, TriangleMesh& mesh) {
+  FASCIA_ASSERT(state.position.size() == skin.topology().storage(), "the state is of this skin");
   skin.topology().surface(state.position, mesh);
 }
 

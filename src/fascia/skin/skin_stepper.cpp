@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/skin/mesh/posed_skin_run.h>
 #include <fascia/skin/ode_skin.h>
 
@@ -75,6 +76,8 @@ void SkinStepper::advance(SkinPoseSource& poses, double start_s, double end_s, S
                           SkinStats& stats) {
   if (!state.ready) begin(poses.at(start_s), state);
   const double span = end_s - start_s;
+  FASCIA_ASSERT(span > 0, "time goes on");
+  FASCIA_ASSERT(state.position.size() == skin_->topology().storage(), "the state is of this skin");
   const SkinPose end = poses.at(end_s);
   const int intervals = intervalCount(end, span, state);
   for (int i = 0; i < intervals; ++i) {
@@ -121,6 +124,8 @@ void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
 void SkinStepper::interval(const SkinPose& pose, double duration_s, SkinState& state,
                            SkinStats& stats) {
   const int steps = chooseStep(duration_s);
+  FASCIA_ASSERT(duration_s > 0 && state.velocity.size() == state.position.size(),
+                "an interval lasts");
   if (coarse_) rideOnCoarse(pose, duration_s, state, stats);
   Stopwatch watch;
   surround(pose, duration_s, state, stats);
@@ -153,6 +158,7 @@ void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinStat
 
   Stopwatch watch;
   coarseVelocity_.resize(coarseStart_.size());
+  FASCIA_ASSERT(coarse.position.size() == coarseStart_.size(), "the coarse grid keeps its points");
   const auto rate = static_cast<float>(1 / duration_s);
   for (const auto axis : VectorArray::kAxes)
     for (std::size_t k = 0; k < coarseStart_.size(); ++k)
@@ -198,6 +204,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
 int SkinStepper::chooseStep(double duration_s) {
   const double given = skin_->settings().step_s;
   const double longest = given > 0 ? given : coarse_ ? kRidingStep_s : skin_->defaultStep_s();
+  FASCIA_ASSERT(longest > 0, "a step lasts");
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / longest - 1e-6)));
   const double h = duration_s / steps;
   // Frame times are rounded sums: only a real change of step is worth new coefficients.

@@ -18,7 +18,8 @@ class SurfaceStepper {
   virtual ~SurfaceStepper() = default;
   // All elastic forces, N; overwrites `force`.
   virtual void forces(const VectorArray& position, VectorArray& force) = 0;
-  // The stabilised leapfrog (leapfrog.h) over one interval. A grid does not read inputs.extraForce.
+  // The stabilised leapfrog (leapfrog.h) over one interval. A grid takes no
+  // inputs.extraForce.
   virtual void run(const StepInputs& inputs, int steps, VectorArray& position,
                    VectorArray& velocity) = 0;
 };

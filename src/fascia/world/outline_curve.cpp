@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -9,6 +11,7 @@ constexpr int kPiecesPerSpan = 8;
 
 // The spline between b and c at s in [0, 1], by Barry & Goldman's pyramid of straight blends.
 Vec2 splinePoint(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d, double s) {
+  FASCIA_ASSERT(s >= 0 && s <= 1, "between two points");
   const auto knot = [](const Vec2& p, const Vec2& q) { return std::sqrt((q - p).norm()); };
   const double ta = -knot(a, b), tc = knot(b, c), td = tc + knot(c, d), t = s * tc;
   const auto blend = [t](const Vec2& p, double tp, const Vec2& q, double tq) -> Vec2 {

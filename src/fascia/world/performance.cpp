@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/hash.h>
 #include <fascia/deformable/contact/body_contact.h>
 #include <fascia/deformable/solve/body_stepper.h>
@@ -81,6 +82,7 @@ Performance::Performance(const Stage& stage, std::uint64_t seed)
 Performance::~Performance() = default;
 
 void Performance::addActor(const SceneCharacterDef& def) {
+  FASCIA_ASSERT(def.character, "the character was built");
   auto actor = std::make_unique<Actor>(def);
   actor->field = std::make_unique<PlacedField>(actor->ahead.flesh, placeOf(def));
   actor->surroundings = std::make_unique<StageSurroundings>(stage_, placeOf(def));
@@ -141,6 +143,7 @@ void Performance::addPaths() {
 }
 
 void Performance::advance(double dt_s) {
+  FASCIA_ASSERT(dt_s > 0 && state_.r.size() == stage_.bodies().size(), "time goes on");
   const std::size_t steps = stage_.stepsPerFrame(1 / dt_s);
   const double start_s = state_.t_s;
   if (!actors_.empty()) before_ = state_;
@@ -157,6 +160,7 @@ void Performance::advance(double dt_s) {
 }
 
 void Performance::step(double h_s) {
+  FASCIA_ASSERT(h_s > 0, "time goes on");
   if (script_) script_->update(*puppet_, h_s);
   puppet_->update(h_s);
   for (const auto& actor : actors_) {
@@ -167,19 +171,18 @@ void Performance::step(double h_s) {
 }
 
 void Performance::setSource(std::size_t i, const PostureSource* source) {
+  FASCIA_ASSERT(i < actors_.size(), "the character performs");
   actors_[i]->role.given = source;
 }
 
 const PostureSource& Performance::source(std::size_t i) const {
+  FASCIA_ASSERT(i < actors_.size(), "the character performs");
   return actors_[i]->role.now();
 }
 
 const CharacterState& Performance::character(std::size_t i) const {
+  FASCIA_ASSERT(i < actors_.size(), "the character performs");
   return actors_[i]->state;
-}
-
-const SkinStats& Performance::skinStats(std::size_t i) const {
-  return actors_[i]->stats;
 }
 
 std::uint64_t Performance::hash() const {

@@ -36,9 +36,8 @@ class Performance {
   // nullptr: the scene's motion again, which is also what it starts with.
   void setSource(std::size_t i, const PostureSource* source);
   const PostureSource& source(std::size_t i) const;
-  const SkinStats& skinStats(std::size_t i) const;
   const BodyStepperStats& bodyStats() const { return stepper_->stats(); }
-  // Strings to pull while it runs, by a hand or a program (spec W11).
+  // Strings to pull while it runs, by a hand or a program.
   Puppet& puppet() { return *puppet_; }
   const Script* script() const { return script_.get(); }  // nullptr: the scene has none
   std::uint64_t hash() const;                             // over time, bodies and characters

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -40,7 +42,8 @@ void turn(const Mat3& rotation, std::size_t first, std::size_t count, Vectors ve
 }
 
 Vectors from(Vectors vectors, std::size_t first) {
-  return {vectors.x + first, vectors.y + first, vectors.z + first};
+  FASCIA_ASSERT(first <= vectors.count, "the rest of the vectors");
+  return {vectors.x + first, vectors.y + first, vectors.z + first, vectors.count - first};
 }
 
 }  // namespace

@@ -152,7 +152,8 @@ Stage::Stage(SceneDef def) : def_(std::move(def)) {
   if (def_.dimension != 2 && def_.dimension != 3)
     diagnostics.error("/dimension",
                       "found " + std::to_string(def_.dimension) + ", expected 2 or 3");
-  checkSimulation(diagnostics);
+  validateValues(def_, diagnostics);
+  checkScheme(diagnostics);
   repeatedNames(def_.bodies, "/bodies", diagnostics);
   repeatedNames(def_.places, "/places", diagnostics);
   // Parts of what is wrong would only make more faults below.
@@ -164,6 +165,12 @@ Stage::Stage(SceneDef def) : def_(std::move(def)) {
   checkConstraints(diagnostics);
   checkPaths(diagnostics);
   diagnostics.throwIfErrors();
+  warnOfIdleSettings(def_, diagnostics);
+  warnings_ = diagnostics.warnings();
+  for (const SceneCharacterDef& character : def_.characters)
+    if (character.character)
+      warnings_.insert(warnings_.end(), character.character->warnings().begin(),
+                       character.character->warnings().end());
 }
 
 void Stage::addBody(std::size_t index, Diagnostics& diagnostics) {

@@ -19,6 +19,11 @@ class Stage {
   // the script must have been read.
   explicit Stage(SceneDef def);
 
+  // What stops nothing but is hardly meant, of the scene's own and of its characters' files; see
+  // Character.
+  const std::vector<Issue>& warnings() const { return warnings_; }
+  void setWarnings(std::vector<Issue> warnings) { warnings_ = std::move(warnings); }
+
   const SceneDef& def() const { return def_; }
   const BodyModel& bodies() const { return model_; }
   const SceneBodyDef& body(BodyId id) const { return def_.bodies[id.index()]; }
@@ -60,7 +65,7 @@ class Stage {
   void addProps(Diagnostics& diagnostics);
   void checkConstraints(Diagnostics& diagnostics) const;
   void checkPaths(Diagnostics& diagnostics) const;
-  void checkSimulation(Diagnostics& diagnostics) const;
+  void checkScheme(Diagnostics& diagnostics) const;
   void checkPoint(const std::string& name, bool orPlace, const std::string& pointer,
                   Diagnostics& diagnostics) const;
   Tie tie(const SceneConstraintDef& def, const OdeState& start) const;
@@ -79,6 +84,7 @@ class Stage {
     PosedFlesh posed;
   };
   std::vector<Prop> props_;
+  std::vector<Issue> warnings_;
 };
 
 }  // namespace fascia

@@ -11,13 +11,6 @@ namespace {
 
 using Kind = SceneConstraintDef::Kind;
 
-void inRange(double value, double low, double high, const std::string& pointer,
-             Diagnostics& diagnostics) {
-  if (value >= low && value <= high) return;  // false for NaN
-  diagnostics.error(pointer, "found " + shortNumber(value) + ", expected a number in [" +
-                                 shortNumber(low) + ", " + shortNumber(high) + "]");
-}
-
 // How many points a constraint takes.
 struct Takes {
   std::size_t least, most;
@@ -118,15 +111,12 @@ void Stage::checkPaths(Diagnostics& diagnostics) const {
   }
 }
 
-void Stage::checkSimulation(Diagnostics& diagnostics) const {
-  const SceneSimulationDef& s = def_.simulation;
-  inRange(s.duration_s, 1e-3, 3600, "/simulation/duration_s", diagnostics);
-  inRange(s.frame_rate_hz, 1, 1000, "/simulation/frame_rate_hz", diagnostics);
-  inRange(s.step_s, 1e-5, 1.0 / 12, "/simulation/step_s", diagnostics);
+void Stage::checkScheme(Diagnostics& diagnostics) const {
+  const std::string& scheme = def_.simulation.scheme;
   const bool contact = def_.ground || !def_.props.empty() || !def_.characters.empty();
-  if (s.scheme != "implicit" && contact)
+  if (scheme != "implicit" && contact)
     diagnostics.error("/simulation/scheme",
-                      "found " + quotedName(s.scheme) + ", but contact needs \"implicit\"",
+                      "found " + quotedName(scheme) + ", but contact needs \"implicit\"",
                       "without ground, props and characters the others can be used");
 }
 

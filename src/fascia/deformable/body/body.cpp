@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/error.h>
 
 namespace fascia {
@@ -14,20 +15,9 @@ constexpr double kMassTolerance = 1e-13;
 // The undeformed body is represented to rounding, or the basis lacks the linear functions.
 constexpr double kRestTolerance = 1e-7;
 
-void check(const char* what, double found, double max, Diagnostics& diagnostics) {
-  if (found >= 0 && found <= max) return;
-  diagnostics.error(
-      std::string("/material/") + what,
-      "found " + std::to_string(found) + ", expected a number in [0, " + std::to_string(max) + "]");
-}
-
-void check(const BodyMaterial& m) {
+void check(const BodyMaterial& material) {
   Diagnostics diagnostics;
-  check("rigidity_Pa", m.rigidity_Pa, 1e12, diagnostics);
-  check("volume_Pa", m.volume_Pa, 1e12, diagnostics);
-  check("relaxation_s", m.relaxation_s, 1e3, diagnostics);
-  check("power_damping_s_per_J", m.power_damping_s_per_J, 1e6, diagnostics);
-  check("drag_per_s", m.drag_per_s, 1e6, diagnostics);
+  validateTunables(material, "/material", diagnostics);
   diagnostics.throwIfErrors();
 }
 
@@ -45,6 +35,10 @@ BodyShape::BodyShape(const BodyDef& def) : basis_(def.basis), material_(def.mate
 void BodyShape::factorMass(const BodyDef& def) {
   const Eigen::Index k = shapeCount_;
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(k, k);
+  FASCIA_ASSERT(k > 0 && (dimension_ == 2 || dimension_ == 3),
+                "a basis spans two or three dimensions");
+  FASCIA_ASSERT(def.matter.mass.points_m.size() == def.matter.mass.weights.size(),
+                "every point of mass has a weight");
   Eigen::VectorXd p(k);
   Box box;
   for (std::size_t i = 0; i < def.matter.mass.size(); ++i) {
@@ -103,6 +97,7 @@ void BodyShape::findRest(const BodyDef& def) {
 void BodyShape::prepareEnergy(const BodyDef& def) {
   Eigen::MatrixXd dp(shapeCount_, 3);
   const Quadrature& volume = def.matter.volume;
+  FASCIA_ASSERT(volume.size() > 0, "energy is measured somewhere");
   // Where ∂x/∂X is constant one point is as good as all.
   const std::size_t count = basis_->degree() == 1 ? 1 : volume.size();
   volume_m3_ = volume.total();
@@ -124,6 +119,7 @@ Eigen::VectorXd BodyShape::pointWeights(const Vec3& X) const {
 }
 
 void BodyShape::pointWeights(const Vec3& X, Eigen::Ref<Eigen::VectorXd> s) const {
+  FASCIA_ASSERT(s.size() == shapeCount_ && X.allFinite(), "a weight for each shape");
   basis_->values(X, s);
   massRoot_.triangularView<Eigen::Lower>().solveInPlace(s);
 }
@@ -135,6 +131,8 @@ Eigen::MatrixXd BodyShape::shapeMatrix(std::span<const double> q) const {
 }
 
 void BodyShape::writeShapeMatrix(std::span<const double> q, Eigen::Ref<Eigen::MatrixXd> R) const {
+  FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()),
+                "the coordinates are of this body");
   // R L = q from the last column on; Eigen's own solver may allocate.
   R = Eigen::Map<const Eigen::MatrixXd>(q.data(), dimension_, shapeCount_);
   for (Eigen::Index j = shapeCount_; j-- > 0;) {
@@ -144,10 +142,15 @@ void BodyShape::writeShapeMatrix(std::span<const double> q, Eigen::Ref<Eigen::Ma
 }
 
 void BodyShape::setShapeMatrix(const Eigen::MatrixXd& R, std::span<double> q) const {
+  FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()) && R.rows() == dimension_ &&
+                    R.cols() == shapeCount_,
+                "the coordinates are of this body");
   Eigen::Map<Eigen::MatrixXd>(q.data(), dimension_, shapeCount_) = R * massRoot_;
 }
 
 void BodyShape::setRest(const Transform& place, std::span<double> q) const {
+  FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()),
+                "the coordinates are of this body");
   Eigen::Map<Eigen::MatrixXd>(q.data(), dimension_, shapeCount_) =
       place.rotation.topLeftCorner(dimension_, dimension_) * rest_ +
       place.translation_m.head(dimension_) * momentumWeights_.transpose();
@@ -155,6 +158,9 @@ void BodyShape::setRest(const Transform& place, std::span<double> q) const {
 
 void BodyShape::setRigidVelocity(std::span<const double> q, const Twist& twist,
                                  std::span<double> velocity) const {
+  FASCIA_ASSERT(
+      q.size() == velocity.size() && q.size() == static_cast<std::size_t>(coordinateCount()),
+      "the coordinates are of this body");
   // ẋ = v + ω × (x − o) is a combination of the columns of q and of the constant function.
   const Vec3& w = twist.angular_rad_per_s;
   Mat3 turn;
@@ -167,6 +173,8 @@ void BodyShape::setRigidVelocity(std::span<const double> q, const Twist& twist,
 }
 
 Vec3 BodyShape::point(std::span<const double> q, const Vec3& X) const {
+  FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()),
+                "the coordinates are of this body");
   const Eigen::Map<const Eigen::MatrixXd> Q(q.data(), dimension_, shapeCount_);
   Vec3 x = Vec3::Zero();
   x.head(dimension_) = Q * pointWeights(X);
@@ -174,6 +182,8 @@ Vec3 BodyShape::point(std::span<const double> q, const Vec3& X) const {
 }
 
 Mat3 BodyShape::deformationGradient(std::span<const double> q, const Vec3& X) const {
+  FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()),
+                "the coordinates are of this body");
   Eigen::MatrixXd dp(shapeCount_, 3);
   basis_->gradients(X, dp);
   Mat3 F = Mat3::Identity();

@@ -38,7 +38,6 @@ class BodyShape {
   double size_m() const { return size_m_; }           // largest extent of the undeformed mass
   const BodyMaterial& material() const { return material_; }
   const Basis& basis() const { return *basis_; }
-  std::size_t energyPointCount() const { return volumes_.size(); }
 
   // s(X): k weights, so that x = Σ_j q.col(j) s_j.
   Eigen::VectorXd pointWeights(const Vec3& X) const;

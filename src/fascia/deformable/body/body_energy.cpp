@@ -2,6 +2,8 @@
 
 #include <fascia/deformable/body/body.h>
 
+#include <fascia/base/assert.h>
+
 // The sums over energy points. A body in the plane is one of unit thickness that does not stretch
 // across: F has F_zz = 1, and the densities' values are those of two dimensions.
 
@@ -64,6 +66,8 @@ Mat3 deformationAt(const double* q, const double* slopes, int shapeCount) {
 }  // namespace
 
 double BodyShape::energy(std::span<const double> q) const {
+  FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()),
+                "the coordinates are of this body");
   return withDimension(dimension_, [&](auto d) {
     double sum = 0;
     for (std::size_t i = 0; i < volumes_.size(); ++i)
@@ -74,6 +78,8 @@ double BodyShape::energy(std::span<const double> q) const {
 }
 
 void BodyShape::addElasticForce(std::span<const double> q, std::span<double> force) const {
+  FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()) && force.size() == q.size(),
+                "the coordinates are of this body");
   withDimension(dimension_, [&](auto d) {
     for (std::size_t i = 0; i < volumes_.size(); ++i) {
       const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
@@ -85,6 +91,9 @@ void BodyShape::addElasticForce(std::span<const double> q, std::span<double> for
 
 void BodyShape::addStiffness(std::span<const double> q, double factor, Curvature curvature,
                              Eigen::Ref<Eigen::MatrixXd> H) const {
+  FASCIA_ASSERT(H.rows() == coordinateCount() && H.cols() == H.rows() &&
+                    q.size() == static_cast<std::size_t>(H.rows()),
+                "the matrix is of this body");
   withDimension(dimension_, [&](auto d) {
     for (std::size_t i = 0; i < volumes_.size(); ++i) {
       const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
@@ -101,6 +110,8 @@ bool BodyShape::damped() const {
 
 void BodyShape::addDampingForce(std::span<const double> q, std::span<const double> velocity,
                                 std::span<double> force) const {
+  FASCIA_ASSERT(velocity.size() == q.size() && force.size() == q.size(),
+                "the coordinates are of this body");
   const auto n = static_cast<Eigen::Index>(q.size());
   Eigen::Map<Eigen::VectorXd> f(force.data(), n);
   const Eigen::Map<const Eigen::VectorXd> v(velocity.data(), n);
@@ -132,6 +143,9 @@ void BodyShape::addDampingForce(std::span<const double> q, std::span<const doubl
 
 void BodyShape::addDampingMatrix(std::span<const double> q, double factor,
                                  Eigen::Ref<Eigen::MatrixXd> D, std::span<double> scratch) const {
+  FASCIA_ASSERT(D.rows() == coordinateCount() && D.cols() == D.rows() &&
+                    scratch.size() >= static_cast<std::size_t>(D.rows()),
+                "the matrix is of this body");
   D.diagonal().array() += factor * material_.drag_per_s;
   withDimension(dimension_, [&](auto d) {
     if (material_.relaxation_s > 0) {

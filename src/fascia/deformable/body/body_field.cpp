@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/error.h>
 #include <fascia/field/affine_kernels.h>
 #include <fascia/geometry/box_tree.h>
@@ -68,6 +69,8 @@ BodyField::BodyField(const BodyModel& model, std::span<const BodySurfacePtr> sur
 void BodyField::update(std::span<const double> q, std::span<const double> v) {
   for (std::size_t i = 0; i < posed_.size(); ++i) {
     const Part& p = (*parts_)[i];
+    FASCIA_ASSERT(p.first + p.count <= q.size() && q.size() == v.size(),
+                  "the state is of these bodies");
     posed_[i].map.set(q.subspan(p.first, p.count), v.subspan(p.first, p.count));
     finish(p, posed_[i]);
   }
@@ -90,6 +93,8 @@ void BodyField::finish(const Part& part, Posed& posed) const {
 void BodyField::evaluate(SolidId solid, ConstVectors points, float* distance_m,
                          Vectors normal) const {
   const bool affine = posed_[solid.index()].map.affine();
+  FASCIA_ASSERT(solid.index() < posed_.size() && normal.count >= points.count,
+                "the solid is of this field");
   for (std::size_t first = 0; first < points.count; first += kChunk) {
     const std::size_t count = std::min(kChunk, points.count - first);
     const ConstVectors chunk = part(points, first, count);
@@ -128,6 +133,7 @@ void BodyField::evaluateCurved(std::size_t solid, ConstVectors points, float* di
   const BodyMap& map = posed_[solid].map;
   const Box& bounds = map.bounds();
   const double far_m = kFar * bounds.size().norm();
+  FASCIA_ASSERT(points.count <= kChunk, "points come in chunks");
   VectorChunk X, n;
   std::array<Mat3, kChunk> inverse;
   std::array<std::size_t, kChunk> mapped;  // which points they are
@@ -155,6 +161,8 @@ void BodyField::evaluateCurved(std::size_t solid, ConstVectors points, float* di
 }
 
 void BodyField::velocity(SolidId solid, ConstVectors points, Vectors velocity) const {
+  FASCIA_ASSERT(solid.index() < posed_.size() && velocity.count >= points.count,
+                "the solid is of this field");
   const BodyMap& map = posed_[solid.index()].map;
   if (map.affine()) {
     const BodyMap::Inverse center = map.inverse(map.center().x_m);
@@ -168,10 +176,12 @@ void BodyField::velocity(SolidId solid, ConstVectors points, Vectors velocity) c
 }
 
 Vec3 BodyField::materialFromWorld(SolidId solid, const Vec3& world) const {
+  FASCIA_ASSERT(solid.index() < posed_.size(), "the solid is of this field");
   return posed_[solid.index()].map.inverse(world).X_m;
 }
 
 Vec3 BodyField::worldFromMaterial(SolidId solid, const Vec3& material) const {
+  FASCIA_ASSERT(solid.index() < posed_.size(), "the solid is of this field");
   return posed_[solid.index()].map.point(material);
 }
 

@@ -29,7 +29,6 @@ class BodyField final : public Field {
 
   // Whether the other was made for the same bodies, or copied from one that was.
   bool sharesBodiesWith(const BodyField& other) const { return parts_ == other.parts_; }
-  BodyId bodyOf(SolidId solid) const { return (*parts_)[solid.index()].body; }
   const BodySurface& surface(SolidId solid) const { return *(*parts_)[solid.index()].surface; }
   const BodyMap& map(SolidId solid) const { return posed_[solid.index()].map; }
   // The deformed surface for pictures.

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/error.h>
 #include <fascia/geometry/box_tree.h>
 
@@ -31,6 +32,8 @@ using GradientBuffer = std::array<double, 3 * BodyMap::kMaxShapes>;
 }  // namespace
 
 BodyMap::BodyMap(BodyShapePtr shape, const Box& domain_m, const TriangleMesh& surface) {
+  FASCIA_ASSERT(shape && !domain_m.empty(), "a map is of a body with a domain");
+  FASCIA_ASSERT(surface.normals.size() <= surface.positions.size(), "every normal is at a point");
   auto constant = std::make_shared<Constant>();
   Constant& c = *constant;
   const Basis& basis = shape->basis();
@@ -73,6 +76,9 @@ BodyMap::BodyMap(BodyShapePtr shape, const Box& domain_m, const TriangleMesh& su
 }
 
 void BodyMap::set(std::span<const double> q, std::span<const double> v) {
+  FASCIA_ASSERT(q.size() == v.size() &&
+                    q.size() == static_cast<std::size_t>(constant_->shape->coordinateCount()),
+                "the coordinates are of this body");
   const BodyShape& shape = *constant_->shape;
   shape.writeShapeMatrix(q, R_);
   shape.writeShapeMatrix(v, rate_);
@@ -93,6 +99,7 @@ void BodyMap::set(std::span<const double> q, std::span<const double> v) {
 // R p(X) and its gradient, with the third coordinate of planes: X's own, or at rest if it is a
 // rate.
 BodyMap::Tangent BodyMap::tangentOf(const Eigen::MatrixXd& R, const Vec3& X, bool isRate) const {
+  FASCIA_ASSERT(R.cols() == constant_->shapeCount, "a column for each shape");
   const Constant& c = *constant_;
   ShapeBuffer values;
   GradientBuffer slopes;
@@ -142,6 +149,8 @@ Vec3 BodyMap::velocity(const Vec3& X) const {
 
 // The largest second difference of lattice samples in a row along an axis, m.
 double BodyMap::largestBend_m(std::size_t axis) const {
+  FASCIA_ASSERT(axis < 3 && constant_->latticeCount <= deformed_m_.size(),
+                "the lattice is of the samples");
   const auto n = static_cast<std::size_t>(constant_->sampleCount);
   const std::size_t stride = axis == 0 ? 1 : axis == 1 ? n : n * n;
   double largest_m = 0;
@@ -187,6 +196,7 @@ std::array<Vec3, 3> BodyMap::bulges() const {
 }
 
 std::size_t BodyMap::nearestSample(const Vec3& x, std::size_t first) const {
+  FASCIA_ASSERT(first < deformed_m_.size(), "there are samples");
   std::size_t best = first;
   double best_m2 = 1e300;
   for (std::size_t i = first; i < deformed_m_.size(); ++i) {

@@ -1,5 +1,6 @@
 #include <fascia/deformable/body/body_model.h>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/error.h>
 
 namespace fascia {
@@ -28,22 +29,27 @@ OdeState BodyModel::restState() const {
 }
 
 void BodyModel::place(BodyId body, const Transform& place, OdeState& state) const {
+  FASCIA_ASSERT(body.index() < shapes_.size() && state.r.size() == size_,
+                "the state is of these bodies");
   shape(body).setRest(place, part(body, std::span<double>(state.r)));
 }
 
 double BodyModel::kineticEnergy_J(std::span<const double> v) const {
+  FASCIA_ASSERT(v.size() == size_, "the velocities are of these bodies");
   double sum = 0;
   for (const double x : v) sum += x * x;
   return 0.5 * sum;
 }
 
 double BodyModel::elasticEnergy_J(std::span<const double> q) const {
+  FASCIA_ASSERT(q.size() == size_, "the coordinates are of these bodies");
   double sum = 0;
   for (std::size_t b = 0; b < shapes_.size(); ++b) sum += shapes_[b]->energy(part(BodyId(b), q));
   return sum;
 }
 
 Vec3 BodyModel::momentum_Ns(std::span<const double> v) const {
+  FASCIA_ASSERT(v.size() == size_, "the velocities are of these bodies");
   Vec3 sum = Vec3::Zero();
   for (std::size_t b = 0; b < shapes_.size(); ++b) {
     const std::span<const double> part = this->part(BodyId(b), v);
@@ -54,6 +60,7 @@ Vec3 BodyModel::momentum_Ns(std::span<const double> v) const {
 }
 
 Vec3 BodyModel::angularMomentum_Nms(std::span<const double> q, std::span<const double> v) const {
+  FASCIA_ASSERT(q.size() == size_ && v.size() == size_, "the state is of these bodies");
   // ∫ x × ẋ dm = Σ_j q_j × q̇_j, as the functions s_j are orthonormal over the mass.
   Vec3 sum = Vec3::Zero();
   const auto d = static_cast<std::size_t>(dimension());

@@ -51,10 +51,6 @@ PuppetPointId Puppet::find(std::string_view name) const {
   throw Error(issue);
 }
 
-bool Puppet::isBodyPoint(PuppetPointId point) const {
-  return std::holds_alternative<BodyPoint>(points_[point.index()].place);
-}
-
 const BodyPoint& Puppet::bodyPoint(PuppetPointId point) const {
   if (!point.valid() || point.index() >= points_.size())
     throw Error("puppet: found the number of no point");

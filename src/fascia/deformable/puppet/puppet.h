@@ -42,7 +42,6 @@ class Puppet {
   PuppetPointId find(std::string_view name) const;
   std::size_t pointCount() const { return points_.size(); }
   const std::string& name(PuppetPointId point) const { return points_[point.index()].name; }
-  bool isBodyPoint(PuppetPointId point) const;
 
   const BodySystem& system() const { return system_; }
   double time_s() const { return state_.t_s; }

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <set>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -13,6 +15,9 @@ using Graph = std::vector<std::vector<int>>;
 Graph graphOf(std::size_t count, std::span<const std::pair<int, int>> edges) {
   Graph graph(count);
   for (const auto& [i, j] : edges) graph[i].push_back(j), graph[j].push_back(i);
+  FASCIA_ASSERT(std::ranges::all_of(
+                    graph, [&](const auto& neighbours) { return areBelow(neighbours, count); }),
+                "neighbours are nodes");
   for (std::vector<int>& neighbours : graph) {
     std::ranges::sort(neighbours);
     neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
@@ -142,6 +147,7 @@ BlockCholesky::Pivot BlockCholesky::pivotOf(const Mat3& A, unsigned char dropped
 
 // Turns a column of A into one of L, and takes its outer product from the columns after it.
 void BlockCholesky::updateBelow(std::size_t column) {
+  FASCIA_ASSERT(column + 1 < columnFirst_.size(), "the column exists");
   const std::size_t first = columnFirst_[column], last = columnFirst_[column + 1];
   for (std::size_t b = first; b < last; ++b) {
     const int target = rows_[b];
@@ -159,6 +165,8 @@ void BlockCholesky::updateBelow(std::size_t column) {
 }
 
 void BlockCholesky::solve(std::span<Vec3> x) const {
+  FASCIA_ASSERT(x.size() == order_.size() && pivots_.size() == order_.size(),
+                "a block for each constraint");
   const std::size_t n = order_.size();
   for (std::size_t j = 0; j < n; ++j) work_[j] = x[order_[j]];
   for (std::size_t j = 0; j < n; ++j)
@@ -174,6 +182,9 @@ void BlockCholesky::solve(std::span<Vec3> x) const {
 }
 
 void BlockCholesky::dependence(int block, int row, std::span<Vec3> n) const {
+  FASCIA_ASSERT(static_cast<std::size_t>(block) < place_.size() && row >= 0 && row < 3 &&
+                    n.size() == order_.size(),
+                "the row exists");
   // A n = 0 restricted to the rows kept: A_KK n_K = −A_Kr. With the full unit L of the scalar
   // factorisation this is the row's column of L⁻ᵀ: a back-substitution, blocks and their triangles.
   const std::size_t count = order_.size(), start = static_cast<std::size_t>(place_[block]);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/error.h>
 #include <fascia/deformable/solve/body_newton.h>
 
@@ -49,6 +50,9 @@ BodyStepper::BodyStepper(BodySystem& system, const BodyStepperOptions& options)
 BodyStepper::~BodyStepper() = default;
 
 void BodyStepper::step(double h_s, OdeState& state) {
+  FASCIA_ASSERT(h_s > 0, "time goes on");
+  FASCIA_ASSERT(state.r.size() == system_.size() && state.v.size() == system_.size(),
+                "the state is of these bodies");
   stepOrHalve(h_s, 0, state, kMaxTimeHalvings);
 }
 
@@ -60,6 +64,7 @@ void BodyStepper::stepOrHalve(double h_s, double lead_s, OdeState& state, int ha
   const bool done = outcome == Outcome::converged || outcome == Outcome::near;
   if (finite && (done || single || halvingsLeft == 0)) {
     if (outcome != Outcome::converged && !single) ++stats_.unconverged;
+    FASCIA_ASSERT(to_.t_s > state.t_s, "a step goes forward");
     ++stats_.steps;
     std::swap(state, to_);
   } else if (halvingsLeft > 0) {

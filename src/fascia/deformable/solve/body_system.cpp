@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/error.h>
 #include <fascia/deformable/bases/check_range.h>
 #include <fascia/deformable/body/for_each_body.h>
@@ -117,6 +118,7 @@ void BodySystem::refresh() {
     }
   }
   hard_.setConstraints(hard);
+  FASCIA_ASSERT(soft_.size() == softness_.size(), "every spring has its softness");
 }
 
 ConstraintSolver& BodySystem::constraints() {
@@ -130,6 +132,8 @@ ConstraintList& BodySystem::softList() {
 }
 
 std::vector<Redundancy> BodySystem::redundancies(const OdeState& state) {
+  FASCIA_ASSERT(state.r.size() == size() && state.v.size() == size(),
+                "the state is of these bodies");
   refresh();
   hard_.update(state.t_s, state.r, state.v);
   return hard_.redundancies();
@@ -156,6 +160,7 @@ std::span<const double> BodySystem::constantForces() {
 }
 
 void BodySystem::addBodyForces(std::span<const double> q, std::span<double> f) const {
+  FASCIA_ASSERT(q.size() == model_.size() && f.size() == q.size(), "the state is of these bodies");
   forEachBody(model_.bodyCount(), kForcesPerTask, [&](BodyId body) {
     model_.shape(body).addElasticForce(model_.part(body, q), model_.part(body, f));
   });
@@ -163,6 +168,8 @@ void BodySystem::addBodyForces(std::span<const double> q, std::span<double> f) c
 
 void BodySystem::addDampingForces(std::span<const double> q, std::span<const double> v,
                                   std::span<double> f) const {
+  FASCIA_ASSERT(q.size() == model_.size() && v.size() == q.size() && f.size() == q.size(),
+                "the state is of these bodies");
   if (!damped_) return;
   forEachBody(model_.bodyCount(), kForcesPerTask, [&](BodyId body) {
     const BodyShape& shape = model_.shape(body);
@@ -172,6 +179,7 @@ void BodySystem::addDampingForces(std::span<const double> q, std::span<const dou
 }
 
 void BodySystem::addSoftPositionForces(double t_s, std::span<const double> q, std::span<double> f) {
+  FASCIA_ASSERT(q.size() == model_.size() && f.size() == q.size(), "the state is of these bodies");
   soft_.evaluate(t_s, q, {});
   for (std::size_t i = 0; i < soft_.size(); ++i) {
     const Vec3 pull = softness_[i].stiffness_N_per_m * soft_.rows(i).value +
@@ -188,6 +196,8 @@ void BodySystem::addSoftVelocityForces(double t_s, std::span<const double> q,
 }
 
 void BodySystem::evaluateFreeForces(const OdeState& state, std::span<double> f) {
+  FASCIA_ASSERT(state.r.size() == size() && state.v.size() == size() && f.size() == size(),
+                "the state is of these bodies");
   refresh();
   std::ranges::copy(constantForces(), f.begin());
   addBodyForces(state.r, f);
@@ -198,6 +208,7 @@ void BodySystem::evaluateFreeForces(const OdeState& state, std::span<double> f) 
 }
 
 double BodySystem::potentialEnergy_J(std::span<const double> q, double t_s) {
+  FASCIA_ASSERT(q.size() == size(), "the state is of these bodies");
   refresh();
   const std::span<const double> constant = constantForces();
   double sum = model_.elasticEnergy_J(q);

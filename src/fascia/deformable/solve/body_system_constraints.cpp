@@ -2,17 +2,22 @@
 
 #include <fascia/deformable/solve/body_system.h>
 
+#include <fascia/base/assert.h>
+
 // What the constraints add to a BodySystem: forces, impulses and corrections.
 
 namespace fascia {
 
 void BodySystem::matchVelocities(OdeState& state) {
+  FASCIA_ASSERT(state.r.size() == size() && state.v.size() == size(),
+                "the state is of these bodies");
   refresh();
   hard_.update(state.t_s, state.r, state.v);
   hard_.project(state.v, [&](std::size_t i) -> Vec3 { return -hard_.list().rows(i).rate_m_per_s; });
 }
 
 void BodySystem::applyImpulse(const BodyPoint& point, const Vec3& impulse_Ns, OdeState& state) {
+  FASCIA_ASSERT(model_.contains(point.body) && impulse_Ns.allFinite(), "a body's point is pushed");
   const Eigen::VectorXd s = model_.shape(point.body).pointWeights(point.X_m);
   const int d = model_.dimension();
   double* v = state.v.data() + model_.offset(point.body);
@@ -22,6 +27,7 @@ void BodySystem::applyImpulse(const BodyPoint& point, const Vec3& impulse_Ns, Od
 }
 
 void BodySystem::satisfyConstraints(OdeState& state) {
+  FASCIA_ASSERT(state.r.size() == size(), "the state is of these bodies");
   // One step does for linear constraints; others take Newton's, which converge quadratically.
   constexpr int kMaxSteps = 20;
   constexpr double kLegal_m = 1e-12;
@@ -43,6 +49,7 @@ void BodySystem::satisfyConstraints(OdeState& state) {
 // the acceleration that λ makes, c̈ = −c/τ² − 2ċ/τ, so that drift decays in one time and without
 // overshoot, whatever the masses (Baumgarte 1972).
 void BodySystem::addPositionForces(double t_s, std::span<const double> r, std::span<double> f) {
+  FASCIA_ASSERT(r.size() == size() && f.size() == r.size(), "the state is of these bodies");
   refresh();
   const std::span<const double> constant = constantForces();
   std::ranges::copy(constant, work_.begin());
@@ -60,6 +67,8 @@ void BodySystem::addPositionForces(double t_s, std::span<const double> r, std::s
 // What is left is linear in the forces, so that both parts may be made legal one by one.
 void BodySystem::addVelocityForces(double t_s, std::span<const double> r, std::span<const double> v,
                                    std::span<double> f) {
+  FASCIA_ASSERT(r.size() == size() && v.size() == r.size() && f.size() == r.size(),
+                "the state is of these bodies");
   refresh();
   std::ranges::fill(work_, 0.0);
   addDampingForces(r, v, work_);
@@ -84,6 +93,7 @@ void BodySystem::addVelocityForces(double t_s, std::span<const double> r, std::s
 }
 
 double BodySystem::project(double t_s, std::span<double> r, std::span<double> v) {
+  FASCIA_ASSERT(r.size() == size() && v.size() == r.size(), "the state is of these bodies");
   refresh();
   if (hard_.empty()) return 0;
   hard_.update(t_s, r, v);

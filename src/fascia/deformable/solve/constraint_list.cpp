@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 void ConstraintList::clear() {
@@ -32,6 +34,9 @@ void ConstraintList::add(const Constraint& constraint) {
 }
 
 Vec3 ConstraintList::pointValue(const ConstraintTerm& term, std::span<const double> q) const {
+  FASCIA_ASSERT(
+      term.offset + static_cast<std::size_t>(term.weightCount * model_->dimension()) <= q.size(),
+      "the coordinates hold the term's body");
   const double* s = weights(term);
   const double* at = q.data() + term.offset;
   Vec3 x = Vec3::Zero();
@@ -51,6 +56,7 @@ void ConstraintList::evaluate(double t_s, std::span<const double> q, std::span<c
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     const auto first = static_cast<std::size_t>(firstTerm_[i]);
     const std::size_t count = static_cast<std::size_t>(firstTerm_[i + 1]) - first;
+    FASCIA_ASSERT(count >= 1 && count <= kMaxConstraintPoints, "a constraint holds a few points");
     for (std::size_t p = 0; p < count; ++p) {
       x[p] = pointValue(terms_[first + p], q);
       // Constant Jacobians leave nothing of c̈ that depends on velocities.
@@ -80,6 +86,7 @@ void ConstraintList::clearMissing(std::size_t i) {
 }
 
 Vec3 ConstraintList::jacobianTimes(std::size_t i, std::span<const double> v) const {
+  FASCIA_ASSERT(i < constraints_.size() && knowsJacobian_, "the constraint was evaluated");
   Vec3 sum = Vec3::Zero();
   for (int p = firstTerm_[i]; p < firstTerm_[i + 1]; ++p)
     sum.noalias() += derivatives_[p] * pointValue(terms_[static_cast<std::size_t>(p)], v);
@@ -87,6 +94,7 @@ Vec3 ConstraintList::jacobianTimes(std::size_t i, std::span<const double> v) con
 }
 
 void ConstraintList::addTransposed(std::size_t i, const Vec3& lambda, std::span<double> f) const {
+  FASCIA_ASSERT(i < constraints_.size() && knowsJacobian_, "the constraint was evaluated");
   const int d = model_->dimension();
   for (int p = firstTerm_[i]; p < firstTerm_[i + 1]; ++p) {
     const ConstraintTerm& term = terms_[static_cast<std::size_t>(p)];

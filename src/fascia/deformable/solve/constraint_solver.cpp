@@ -1,5 +1,7 @@
 #include <fascia/deformable/solve/constraint_solver.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -20,6 +22,7 @@ void ConstraintSolver::setConstraints(std::span<const ConstraintPtr> constraints
 void ConstraintSolver::update(double t_s, std::span<const double> q, std::span<const double> v) {
   if (empty()) return;
   list_.evaluate(t_s, q, v);
+  FASCIA_ASSERT(lambda_.size() == list_.size(), "a force for each constraint");
   if (factored_ && list_.hasConstantJacobian()) return;
   assemble();
   matrix_.factorizeAndFindDependent(kDependent);
@@ -54,6 +57,8 @@ void ConstraintSolver::assemble() {
 }
 
 void ConstraintSolver::solve(std::span<Vec3> b) const {
+  FASCIA_ASSERT(b.size() == list_.size() && (factored_ || empty()),
+                "the matrix of these constraints is there");
   if (list_.hasConstantJacobian()) redundancies_.makeSolvable(b);
   matrix_.solve(b);
 }

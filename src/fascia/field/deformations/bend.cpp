@@ -4,6 +4,8 @@
 
 #include <fascia/field/registry.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 namespace {
@@ -24,6 +26,7 @@ class BendDeformation final : public Deformation {
   std::span<const ParameterInfo> parameters() const override { return kBendParameters; }
 
   Vec3 forward(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
+    FASCIA_ASSERT(!p.empty() && zHalf_m > 0, "a deformation acts along a length");
     if (p[0] == 0) return x;
     const double k = p[0] / (2 * zHalf_m), z = std::clamp(x.z(), -zHalf_m, zHalf_m);
     const double s = std::sin(k * z), c = std::cos(k * z), rest = x.z() - z;
@@ -32,6 +35,7 @@ class BendDeformation final : public Deformation {
 
   // tan θ = k Z' / (1 − k X) within the bent part; beyond it θ is the nearer end's.
   Vec3 inverse(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
+    FASCIA_ASSERT(!p.empty() && zHalf_m > 0, "a deformation acts along a length");
     if (p[0] == 0) return x;
     const double k = p[0] / (2 * zHalf_m);
     const double z = std::atan2(k * x.z(), 1 - k * x.x()) / k;

@@ -4,6 +4,8 @@
 
 #include <fascia/field/registry.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 namespace {
@@ -18,10 +20,12 @@ class TaperDeformation final : public Deformation {
   std::string_view name() const override { return "taper"; }
   std::span<const ParameterInfo> parameters() const override { return kTaperParameters; }
   Vec3 forward(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
+    FASCIA_ASSERT(!p.empty() && zHalf_m > 0, "a deformation acts along a length");
     const double f = scale(p, zHalf_m, x.z());
     return {f * x.x(), f * x.y(), x.z()};
   }
   Vec3 inverse(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
+    FASCIA_ASSERT(!p.empty() && zHalf_m > 0, "a deformation acts along a length");
     const double f = scale(p, zHalf_m, x.z());
     return {x.x() / f, x.y() / f, x.z()};
   }

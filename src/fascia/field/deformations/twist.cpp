@@ -4,6 +4,8 @@
 
 #include <fascia/field/registry.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 namespace {
@@ -18,9 +20,11 @@ class TwistDeformation final : public Deformation {
   std::string_view name() const override { return "twist"; }
   std::span<const ParameterInfo> parameters() const override { return kTwistParameters; }
   Vec3 forward(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
+    FASCIA_ASSERT(!p.empty() && zHalf_m > 0, "a deformation acts along a length");
     return turned(angle(p, zHalf_m, x.z()), x);
   }
   Vec3 inverse(std::span<const double> p, double zHalf_m, const Vec3& x) const override {
+    FASCIA_ASSERT(!p.empty() && zHalf_m > 0, "a deformation acts along a length");
     return turned(-angle(p, zHalf_m, x.z()), x);
   }
   Mat3 jacobian(std::span<const double> p, double zHalf_m, const Vec3& x) const override {

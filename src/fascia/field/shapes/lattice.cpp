@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 namespace {
@@ -46,6 +48,8 @@ TriangleMesh latticeSurface(
     for (int c = 0; c <= columns; ++c) {
       const SurfacePoint point =
           surface(globeDirection(rows[r].latitude_rad, c, columns), rows[r].upper);
+      FASCIA_ASSERT(point.position_m.allFinite() && isUnit(point.normal),
+                    "a surface has places and unit normals");
       mesh.positions.push_back(point.position_m.cast<float>());
       mesh.normals.push_back(point.normal.cast<float>());
       mesh.uvs.emplace_back(static_cast<float>(c) / static_cast<float>(columns),

@@ -5,8 +5,6 @@
 namespace fascia {
 namespace {
 
-constexpr int kMaxOrder = 8, kMaxCells = 6;
-
 class BodyBasisCodec final : public Codec<BodyBasisDef> {
  public:
   void read(const Json& json, const JsonPath& path, Reading& reading,
@@ -85,7 +83,7 @@ class BodyBasisCodec final : public Codec<BodyBasisDef> {
     return out;
   }
 
-  CodecPtr<int> order_ = integers(1, kMaxOrder), cells_ = integers(1, kMaxCells);
+  CodecPtr<int> order_ = integers(kBasisOrder.range), cells_ = integers(kBasisCells.range);
 };
 
 }  // namespace

@@ -4,7 +4,9 @@ namespace fascia {
 
 Character buildCharacter(const CharacterFile& file, const BuildOptions& options) {
   try {
-    return Character(file.def, options);
+    Character character(file.def, options);
+    character.setWarnings(file.lines.locate(character.warnings()));
+    return character;
   } catch (const Error& error) {
     throw Error(file.lines.locate(error.issues()));
   }

@@ -1,4 +1,5 @@
 #include <fascia/io/documents/character_codecs.h>
+#include <fascia/io/documents/tunable_fields.h>
 
 namespace fascia {
 namespace {
@@ -24,23 +25,21 @@ class UnwrappedList final : public Codec<Outer> {
 };
 
 CodecPtr<FleshDef> fleshCodec() {
-  return std::make_shared<UnwrappedList<FleshDef, FleshSolidDef>>(&FleshDef::solids,
-                                                                  listOf(solidCodec(), kMaxSolids));
+  return std::make_shared<UnwrappedList<FleshDef, FleshSolidDef>>(
+      &FleshDef::solids, listOf(solidCodec(), kMostSolids));
 }
 
 CodecPtr<SkeletonDef> skeletonCodec() {
   return std::make_shared<UnwrappedList<SkeletonDef, JointDef>>(&SkeletonDef::joints,
-                                                                listOf(jointCodec(), kMaxJoints));
+                                                                listOf(jointCodec(), kMostJoints));
 }
 
 CodecPtr<RigDef> rigCodec() {
   using Object = ObjectCodec<RigDef>;
   auto codec = std::make_shared<Object>("A skinned mesh from a file: the skin instead of a grid.");
-  codec
-      ->field("file", &RigDef::file, names(), "glTF or GLB in the folder of this file, or below it",
-              Object::Need::required)
-      .field("scale", &RigDef::scale, numbers({1e-6, 1e6}),
-             "Of all its lengths; 0.01 for a file in centimetres");
+  codec->field("file", &RigDef::file, names(),
+               "glTF or GLB in the folder of this file, or below it", Object::Need::required);
+  addTunables<RigDef>(*codec);
   return codec;
 }
 
@@ -99,27 +98,7 @@ class CharacterCodec final : public ObjectCodec<CharacterDef> {
 CodecPtr<SimulationDef> simulationCodec() {
   using S = SimulationDef;
   auto codec = std::make_shared<ObjectCodec<S>>("How time passes.");
-  std::vector<std::pair<std::string, std::string>> integrators;
-  for (const char* name :
-       {"auto", "euler", "implicit-euler", "verlet", "rk2", "rk4", "rosenbrock4", "xpbd"}) {
-    integrators.emplace_back(name, name);
-  }
-  const NumberRange step{1e-7, 1};
-  codec->field("frame_rate_hz", &S::frame_rate_hz, numbers({1, 1000}), "Frames that a bake writes")
-      .field("integrator", &S::integrator, words(std::move(integrators)),
-             "auto: the fast scheme that never explodes")
-      .field("step_s", &S::step_s, numbers({0, 1.0 / 12}), "Fixed step or first guess; 0: chosen")
-      .field("min_step_s", &S::min_step_s, numbers(step), "For adaptive integrators")
-      .field("max_step_s", &S::max_step_s, numbers(step), "For adaptive integrators")
-      .field("position_tolerance_m", &S::position_tolerance_m, numbers({1e-9, 1}),
-             "Local error per step of the adaptive integrators")
-      .field("velocity_tolerance", &S::velocity_tolerance, numbers({1e-9, 1}),
-             "Relative; the leapfrog's inner iteration")
-      .field("correction_tolerance_m", &S::correction_tolerance_m, numbers({1e-9, 1}),
-             "A larger correction out of the flesh redoes the step")
-      .field("gravity_m_per_s2", &S::gravity_m_per_s2, vectors({-1000, 1000}), "y is up")
-      .field("settle_s", &S::settle_s, numbers({0, 60}),
-             "Simulated before time 0 in the first posture");
+  addTunables<S>(*codec);
   return codec;
 }
 

@@ -22,11 +22,7 @@ Json dofJson(Dof dof, double value);
 bool readDofValue(Dof dof, const Json& json, const JsonPath& path, Reading& reading, double& value);
 
 // Beyond these a file is refused: what it would cost to build grows with them.
-inline constexpr std::size_t kMaxJoints = 4096;
-inline constexpr std::size_t kMaxSolids = 4096;
-inline constexpr std::size_t kMaxListed = 10'000;   // regions, brushes, tracks, deformations …
+inline constexpr std::size_t kMaxListed = 10'000;   // regions, brushes, motions, drivers …
 inline constexpr std::size_t kMaxKeys = 1'000'000;  // of one track
-inline constexpr int kMaxGridSide = 4096;
-inline constexpr int kMaxGridPoints = 1 << 20;  // columns x rows
 
 }  // namespace fascia

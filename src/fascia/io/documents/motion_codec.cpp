@@ -1,10 +1,12 @@
 #include <fascia/io/documents/character_codecs.h>
+#include <fascia/io/documents/tunable_fields.h>
 
 namespace fascia {
 namespace {
 
-constexpr NumberRange kTime{0, 1e6};
-constexpr NumberRange kShape{-1, 1};  // tension, continuity, bias
+constexpr NumberRange kTime = tunableOf(&Key::time_s).range;
+// Whatever the channel's unit: a time, or a value as the reader then checks it.
+constexpr NumberRange kKeyNumber = {};
 
 // What a track animates decides the unit of its keys.
 class ChannelUnit {
@@ -25,7 +27,7 @@ class ChannelUnit {
   }
   bool read(const Json& json, const JsonPath& path, Reading& reading, double& value) const {
     return dof_ ? readDofValue(*dof_, json, path, reading, value)
-                : readParameter(parameter_, json, path, reading, {}, value);
+                : readParameter(parameter_, json, path, reading, kKeyValue.range, value);
   }
 
  private:
@@ -46,22 +48,18 @@ void readKey(const Json& json, const JsonPath& path, Reading& reading, const Cha
     return;
   }
   const std::string valueKey = unit.valueKey();
-  const std::pair<std::string_view, double*> shape[] = {
-      {"tension", &key.tension}, {"continuity", &key.continuity}, {"bias", &key.bias}};
   for (const Json::Member& member : json.object()) {
     const JsonPath at = path[std::string_view(member.key)];
     NearestName nearest(member.key);
-    nearest.offer("t_s");
     nearest.offer(valueKey);
-    bool known = member.key == "t_s" || member.key == valueKey;
-    if (member.key == "t_s") readNumber(member.value, at, reading, kTime, key.time_s);
-    if (member.key == valueKey) unit.read(member.value, at, reading, key.value);
-    for (const auto& [name, target] : shape) {
-      nearest.offer(name);
-      if (member.key != name) continue;
-      readNumber(member.value, at, reading, kShape, *target);
+    bool known = member.key == valueKey;
+    if (known) unit.read(member.value, at, reading, key.value);
+    forEachTunable<Key>([&](const auto& row) {
+      nearest.offer(row.key);
+      if (member.key != row.key) return;
+      readNumber(member.value, at, reading, row.range, key.*row.member);
       known = true;
-    }
+    });
     if (!known) {
       reading.fault(member.value, at, "unknown key " + shown(member.key), nearest.hint());
     }
@@ -76,11 +74,10 @@ Json keyJson(const Key& key, const ChannelUnit& unit) {
     return Json::List{key.time_s, unit.write(key.value)};
   }
   Json out;
-  out.set("t_s", key.time_s);
-  out.set(unit.valueKey(), unit.write(key.value));
-  if (key.tension != 0) out.set("tension", key.tension);
-  if (key.continuity != 0) out.set("continuity", key.continuity);
-  if (key.bias != 0) out.set("bias", key.bias);
+  forEachTunable<Key>([&](const auto& row) {
+    if (row.isRequired || key.*row.member != 0) out.set(std::string(row.key), key.*row.member);
+    if (row.member == &Key::time_s) out.set(unit.valueKey(), unit.write(key.value));
+  });
   return out;
 }
 
@@ -95,17 +92,20 @@ Json keySchema() {
   pair.set("description", "[time in seconds, value]");
   pair.set("minItems", 2);
   pair.set("maxItems", 2);
-  pair.set("items", NumberRange{}.schema());
+  pair.set("items", numberSchema(kKeyNumber));
   Json properties;
-  properties.set("t_s", kTime.schema());
   Json::List values;
   for (const char* key : {"value_deg", "value_m", "value"}) {
-    properties.set(key, NumberRange{}.schema());
+    properties.set(key, numberSchema(kKeyNumber));
     Json one;
     one.set("required", Json::List{key});
     values.push_back(std::move(one));
   }
-  for (const char* key : {"tension", "continuity", "bias"}) properties.set(key, kShape.schema());
+  forEachTunable<Key>([&](const auto& row) {
+    Json property = numberSchema(row.range);
+    property.set("description", std::string(row.help));
+    properties.set(std::string(row.key), std::move(property));
+  });
   Json full = typed("object");
   full.set("properties", std::move(properties));
   full.set("required", Json::List{"t_s"});
@@ -224,11 +224,10 @@ CodecPtr<MotionDef> motionCodec() {
   using M = MotionDef;
   using Object = ObjectCodec<M>;
   auto codec = std::make_shared<Object>("A motion: keyed tracks.");
-  codec->field("name", &M::name, names(), "The motion's name", Object::Need::required)
-      .field("loop", &M::loop, booleans(), "Repeats; the last posture equals the first")
-      .field("duration_s", &M::duration_s, numbers({0, 1e6}), "0: the last key's time")
-      .field("tracks", &M::tracks, listOf<TrackDef>(std::make_shared<TrackCodec>(), kMaxListed),
-             "What moves");
+  codec->field("name", &M::name, names(), "The motion's name", Object::Need::required);
+  addTunables<M>(*codec);
+  codec->field("tracks", &M::tracks, listOf<TrackDef>(std::make_shared<TrackCodec>(), kMostTracks),
+               "What moves");
   return codec;
 }
 

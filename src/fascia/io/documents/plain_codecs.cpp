@@ -24,7 +24,7 @@ class NumberCodec final : public Codec<double> {
     readNumber(json, path, reading, range_, value);
   }
   Json write(const double& value) const override { return value; }
-  Json schema() const override { return range_.schema(); }
+  Json schema() const override { return numberSchema(range_); }
   bool same(const double& a, const double& b) const override { return a == b; }
 
  private:
@@ -33,14 +33,12 @@ class NumberCodec final : public Codec<double> {
 
 class IntegerCodec final : public Codec<int> {
  public:
-  IntegerCodec(int min, int max) : min_(min), max_(max) {}
+  explicit IntegerCodec(NumberRange range) : range_(range) {}
   void read(const Json& json, const JsonPath& path, Reading& reading, int& value) const override {
     const bool number = json.is(Json::Kind::number);
     const double found = number ? json.number() : 0;
-    if (!number || found != std::floor(found) || found < min_ || found > max_) {
-      reading.unexpected(
-          json, path,
-          "a whole number in [" + std::to_string(min_) + ", " + std::to_string(max_) + "]");
+    if (!number || found != std::floor(found) || !range_.contains(found)) {
+      reading.unexpected(json, path, range_.wholeText());
       return;
     }
     value = static_cast<int>(found);
@@ -49,14 +47,57 @@ class IntegerCodec final : public Codec<int> {
   Json schema() const override {
     Json out;
     out.set("type", "integer");
-    out.set("minimum", min_);
-    out.set("maximum", max_);
+    out.set("minimum", range_.min);
+    out.set("maximum", range_.max);
     return out;
   }
   bool same(const int& a, const int& b) const override { return a == b; }
 
  private:
-  int min_, max_;
+  NumberRange range_;
+};
+
+class AngleCodec final : public Codec<double> {
+ public:
+  explicit AngleCodec(NumberRange range_deg) : range_deg_(range_deg) {}
+  void read(const Json& json, const JsonPath& path, Reading& reading,
+            double& value) const override {
+    readAngle(json, path, reading, range_deg_, value);
+  }
+  Json write(const double& value) const override { return Json::Number{degreesDigits(value)}; }
+  Json schema() const override { return numberSchema(range_deg_); }
+  bool same(const double& a, const double& b) const override { return a == b; }
+
+ private:
+  NumberRange range_deg_;
+};
+
+class WordCodec final : public Codec<std::string> {
+ public:
+  explicit WordCodec(std::vector<std::string_view> known) : known_(std::move(known)) {}
+  void read(const Json& json, const JsonPath& path, Reading& reading,
+            std::string& value) const override {
+    if (!reading.expect(json, Json::Kind::text, path)) return;
+    std::string hint;
+    const std::string fault = wordFault(json.text(), known_, hint);
+    if (fault.empty()) {
+      value = json.text();
+    } else {
+      reading.fault(json, path, fault, hint);
+    }
+  }
+  Json write(const std::string& value) const override { return value; }
+  Json schema() const override {
+    Json::List all;
+    for (const std::string_view word : known_) all.emplace_back(std::string(word));
+    Json out;
+    out.set("enum", std::move(all));
+    return out;
+  }
+  bool same(const std::string& a, const std::string& b) const override { return a == b; }
+
+ private:
+  std::vector<std::string_view> known_;
 };
 
 class BooleanCodec final : public Codec<bool> {
@@ -130,7 +171,7 @@ class VectorCodec final : public Codec<Vec3> {
   Json write(const Vec3& value) const override {
     return Json::List{value.x(), value.y(), value.z()};
   }
-  Json schema() const override { return tripleSchema(range_.schema()); }
+  Json schema() const override { return tripleSchema(numberSchema(range_)); }
   bool same(const Vec3& a, const Vec3& b) const override { return a == b; }
 
  private:
@@ -139,10 +180,11 @@ class VectorCodec final : public Codec<Vec3> {
 
 class AngleVectorCodec final : public Codec<Vec3> {
  public:
+  explicit AngleVectorCodec(NumberRange range_deg) : range_deg_(range_deg) {}
   void read(const Json& json, const JsonPath& path, Reading& reading, Vec3& value) const override {
     if (!expectTriple(json, path, reading)) return;
     for (std::size_t i = 0; i < 3; ++i) {
-      readAngle(json.list()[i], path[i], reading, kRange_deg, value[static_cast<int>(i)]);
+      readAngle(json.list()[i], path[i], reading, range_deg_, value[static_cast<int>(i)]);
     }
   }
   Json write(const Vec3& value) const override {
@@ -150,11 +192,11 @@ class AngleVectorCodec final : public Codec<Vec3> {
     for (int i = 0; i < 3; ++i) out.emplace_back(Json::Number{degreesDigits(value[i])});
     return out;
   }
-  Json schema() const override { return tripleSchema(kRange_deg.schema()); }
+  Json schema() const override { return tripleSchema(numberSchema(range_deg_)); }
   bool same(const Vec3& a, const Vec3& b) const override { return a == b; }
 
  private:
-  static constexpr NumberRange kRange_deg{-36000, 36000};
+  NumberRange range_deg_;
 };
 
 class ColorCodec final : public Codec<std::array<float, 3>> {
@@ -186,7 +228,7 @@ class ColorCodec final : public Codec<std::array<float, 3>> {
     hex.set("type", "string");
     hex.set("pattern", "^#[0-9a-fA-F]{6}$");
     Json out;
-    out.set("anyOf", Json::List{hex, tripleSchema(NumberRange{0, 1}.schema())});
+    out.set("anyOf", Json::List{hex, tripleSchema(numberSchema({0, 1}))});
     return out;
   }
   bool same(const Rgb& a, const Rgb& b) const override { return a == b; }
@@ -233,16 +275,11 @@ class FleshColorCodec final : public Codec<Color> {
 
 }  // namespace
 
-std::string NumberRange::text() const {
-  return std::string("a number in ") + (aboveMin ? "(" : "[") + shortestDigits(min) + ", " +
-         shortestDigits(max) + "]";
-}
-
-Json NumberRange::schema() const {
+Json numberSchema(const NumberRange& range) {
   Json out;
   out.set("type", "number");
-  out.set(aboveMin ? "exclusiveMinimum" : "minimum", min);
-  out.set("maximum", max);
+  out.set(range.aboveMin ? "exclusiveMinimum" : "minimum", range.min);
+  out.set("maximum", range.max);
   return out;
 }
 
@@ -315,8 +352,8 @@ bool readParameter(std::string_view name, const Json& json, const JsonPath& path
 CodecPtr<double> numbers(NumberRange range) {
   return std::make_shared<NumberCodec>(range);
 }
-CodecPtr<int> integers(int min, int max) {
-  return std::make_shared<IntegerCodec>(min, max);
+CodecPtr<int> integers(NumberRange range) {
+  return std::make_shared<IntegerCodec>(range);
 }
 CodecPtr<bool> booleans() {
   return std::make_shared<BooleanCodec>();
@@ -330,8 +367,14 @@ CodecPtr<std::string> names() {
 CodecPtr<Vec3> vectors(NumberRange range) {
   return std::make_shared<VectorCodec>(range);
 }
-CodecPtr<Vec3> angleVectors() {
-  return std::make_shared<AngleVectorCodec>();
+CodecPtr<double> angles(NumberRange range_deg) {
+  return std::make_shared<AngleCodec>(range_deg);
+}
+CodecPtr<Vec3> angleVectors(NumberRange range_deg) {
+  return std::make_shared<AngleVectorCodec>(range_deg);
+}
+CodecPtr<std::string> wordsOf(std::vector<std::string_view> known) {
+  return std::make_shared<WordCodec>(std::move(known));
 }
 CodecPtr<Color> colors() {
   return std::make_shared<FleshColorCodec>();

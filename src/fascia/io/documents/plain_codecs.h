@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include <fascia/base/tunable.h>
 #include <fascia/io/documents/codec.h>
 #include <fascia/math/types.h>
 
@@ -9,27 +10,19 @@ namespace fascia {
 
 struct Color;
 
-struct NumberRange {
-  double min = -1e9, max = 1e9;
-  bool aboveMin = false;  // min itself is refused
-
-  bool contains(double x) const { return (aboveMin ? x > min : x >= min) && x <= max; }
-  std::string text() const;  // "a number in (0, 1e6]"
-  Json schema() const;       // {"type": "number", …}
-};
-
-inline constexpr NumberRange positive(double max) {
-  return {0, max, true};
-}
+Json numberSchema(const NumberRange& range);  // {"type": "number", …}
 
 CodecPtr<double> numbers(NumberRange range = {});
-CodecPtr<int> integers(int min, int max);
+CodecPtr<int> integers(NumberRange range);
 CodecPtr<bool> booleans();
 CodecPtr<std::string> texts(std::size_t maxBytes);
 CodecPtr<std::string> names();  // short, not empty
 CodecPtr<Vec3> vectors(NumberRange range = {});
-CodecPtr<Vec3> angleVectors();  // degrees in the file, radians in memory
-CodecPtr<Color> colors();       // "#rrggbb", or [r, g, b] where that would not be exact
+// Degrees in the file, radians in memory.
+CodecPtr<double> angles(NumberRange range_deg);
+CodecPtr<Vec3> angleVectors(NumberRange range_deg);
+CodecPtr<std::string> wordsOf(std::vector<std::string_view> known);
+CodecPtr<Color> colors();  // "#rrggbb", or [r, g, b] where that would not be exact
 CodecPtr<std::array<float, 3>> colorArrays();
 
 // Reads a number in the range; reports and returns false if there is none.

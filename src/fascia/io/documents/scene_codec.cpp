@@ -2,18 +2,18 @@
 #include <fascia/io/documents/character_codecs.h>
 #include <fascia/io/documents/scene_codecs.h>
 #include <fascia/io/documents/solid_members.h>
+#include <fascia/io/documents/tunable_fields.h>
 
 namespace fascia {
 namespace {
 
-constexpr NumberRange kLengths{-1e6, 1e6};
-constexpr NumberRange kFrictions{0, 10};
 constexpr std::size_t kMostBodies = 20'000, kMostOutlinePoints = 2048;
 
 // Coordinates of a place or vector: at least `kLeast` of them, what is missing is 0.
 template <class Vector, std::size_t kLeast>
 class CoordinatesCodec final : public Codec<Vector> {
  public:
+  explicit CoordinatesCodec(NumberRange range = kSceneLengths) : range_(range) {}
   void read(const Json& json, const JsonPath& path, Reading& reading,
             Vector& value) const override {
     if (!json.is(Json::Kind::list) || json.list().size() < kLeast || json.list().size() > kMost) {
@@ -23,7 +23,7 @@ class CoordinatesCodec final : public Codec<Vector> {
     }
     Vector found = Vector::Zero();
     for (std::size_t i = 0; i < json.list().size(); ++i)
-      readNumber(json.list()[i], path[i], reading, kLengths, found[static_cast<int>(i)]);
+      readNumber(json.list()[i], path[i], reading, range_, found[static_cast<int>(i)]);
     value = found;
   }
   Json write(const Vector& value) const override {
@@ -36,20 +36,37 @@ class CoordinatesCodec final : public Codec<Vector> {
     out.set("type", "array");
     out.set("minItems", static_cast<int>(kLeast));
     out.set("maxItems", static_cast<int>(kMost));
-    out.set("items", kLengths.schema());
+    out.set("items", numberSchema(range_));
     return out;
   }
   bool same(const Vector& a, const Vector& b) const override { return a == b; }
 
  private:
   static constexpr std::size_t kMost = Vector::RowsAtCompileTime;
+  NumberRange range_;
 };
 
 // [x, y, z], or [x, y] in the plane z = 0.
 using PlaceCodec = CoordinatesCodec<Vec3, 2>;
 
-CodecPtr<Vec3> places() {
-  return std::make_shared<PlaceCodec>();
+// As tunable_fields.h does it, but for places.
+struct PlaceCodecs {
+  template <class T>
+  CodecPtr<Vec3> operator()(const Tunable<T, Vec3>& row) const {
+    if (row.isAngle()) return angleVectors(row.range);
+    return std::make_shared<PlaceCodec>(row.range);
+  }
+  template <class T>
+  CodecPtr<std::optional<Vec3>> operator()(const Tunable<T, std::optional<Vec3>>& row) const {
+    return optionally<Vec3>((*this)(Tunable<T, Vec3>{{row}, nullptr}));
+  }
+  auto operator()(const auto& row) const { return codecOf(row); }
+};
+
+template <class Def, class T>
+void addSceneTunables(ObjectCodec<T>& codec,
+                      std::initializer_list<std::string_view> leaveOut = {}) {
+  addTunables<Def>(codec, leaveOut, PlaceCodecs());
 }
 
 // {"tip": [0, 1, 0], …}: places by their names.
@@ -92,20 +109,6 @@ class NamedPlacesCodec final : public Codec<std::vector<NamedPlaceDef>> {
   PlaceCodec place_;
 };
 
-class AngleCodec final : public Codec<double> {
- public:
-  void read(const Json& json, const JsonPath& path, Reading& reading,
-            double& value) const override {
-    readAngle(json, path, reading, kRange_deg, value);
-  }
-  Json write(const double& value) const override { return Json::Number{degreesDigits(value)}; }
-  Json schema() const override { return kRange_deg.schema(); }
-  bool same(const double& a, const double& b) const override { return a == b; }
-
- private:
-  static constexpr NumberRange kRange_deg{-36000, 36000};
-};
-
 class PlacedSolidCodec final : public SolidOwnerCodec<PlacedSolidDef> {
  public:
   enum class Role { ornament, prop };
@@ -115,13 +118,9 @@ class PlacedSolidCodec final : public SolidOwnerCodec<PlacedSolidDef> {
     using P = PlacedSolidDef;
     field("name", &P::name, names(), "Its name",
           role == Role::prop ? Need::required : Need::optional);
-    field("position_m", &P::position_m, places(),
-          role == Role::prop ? "In the world" : "In the undeformed body");
-    field("orientation_deg", &P::orientation_rad, angleVectors(),
-          "Turns about x, y, z; applied as Rz Ry Rx");
+    if (role == Role::prop) addSceneTunables<P>(*this);
+    if (role == Role::ornament) addSceneTunables<P>(*this, {"friction"});
     field("color", &P::color, colors(), "Its colour");
-    if (role == Role::prop)
-      field("friction", &P::friction, numbers(kFrictions), "Coulomb's coefficient");
   }
 };
 
@@ -129,9 +128,7 @@ CodecPtr<ScatterDef> scatterCodec() {
   using S = ScatterDef;
   auto codec = std::make_shared<ObjectCodec<S>>(
       "How much the start differs from seed to seed: uniformly up to plus or minus these.");
-  codec->field("position_m", &S::position_m, places(), "Each axis")
-      .field("orientation_deg", &S::orientation_rad, angleVectors(), "Each turn")
-      .field("velocity_m_per_s", &S::velocity_m_per_s, places(), "Each axis");
+  addSceneTunables<S>(*codec);
   return codec;
 }
 
@@ -146,16 +143,8 @@ class SceneBodyCodec final : public ObjectCodec<SceneBodyDef> {
     using B = SceneBodyDef;
     field("name", &B::name, names(), "Its name, without '.'", Need::required);
     field("basis", &B::basis, bodyBasisCodec(), "The shapes that it can take");
-    addMaterialFields(*this);
-    field("position_m", &B::position_m, places(),
-          "Where its origin is at the start; of plates z is the layer they are drawn in");
-    field("orientation_deg", &B::orientation_rad, angleVectors(),
-          "Turns about x, y, z; applied as Rz Ry Rx");
-    field("velocity_m_per_s", &B::velocity_m_per_s, places(), "Of its centre, at the start");
-    field("spin_deg_per_s", &B::spin_rad_per_s, angleVectors(), "At the start");
+    addSceneTunables<B>(*this);
     field("scatter", &B::scatter, scatterCodec(), "");
-    field("collides", &B::collides, booleans(), "With ground, props, characters, other bodies");
-    field("friction", &B::friction, numbers(kFrictions), "Coulomb's coefficient");
     field("points", &B::points, std::make_shared<NamedPlacesCodec>(),
           "Points of the undeformed body by name; elsewhere they are called \"body.point\"");
     field("color", &B::color, colors(), "Its colour");
@@ -229,6 +218,10 @@ class SceneBodyCodec final : public ObjectCodec<SceneBodyDef> {
               return out;
             }};
   }
+  template <class M>
+  static Field own(const Tunable<SceneBodyDef, M>& row) {
+    return own<M>(std::string(row.key), row.member, codecOf(row), std::string(row.help));
+  }
   const Field* findField(std::string_view name) const {
     for (const Field& field : fields_)
       if (field.name == name) return &field;
@@ -241,11 +234,7 @@ class SceneBodyCodec final : public ObjectCodec<SceneBodyDef> {
   std::vector<Field> fields_{
       own("outline_m", &SceneBodyDef::outline_m, outline_,
           "Around a plate in the plane z = 0, for scenes of two dimensions"),
-      own("smooth_outline", &SceneBodyDef::smooth_outline, booleans(),
-          "A closed curve through the points; a point twice in a row is a corner"),
-      own("thickness_m", &SceneBodyDef::thickness_m, numbers(positive(1e3)), "Of the plate"),
-      own("inflated", &SceneBodyDef::inflated, booleans(),
-          "Drawn with a round rim, like a cushion"),
+      own(kSmoothOutline), own(kPlateThickness), own(kInflated),
       own("mesh", &SceneBodyDef::mesh_file, names(),
           "A closed mesh: glTF or GLB in the folder of this file, or below it")};
 };
@@ -266,12 +255,8 @@ CodecPtr<SceneConstraintDef> constraintCodec() {
              "plane: a point stays on it; rod: two keep their distance; spring: pulls",
              Object::Need::required)
       .field("points", &C::points, listOf<std::string>(names(), 2),
-             "\"body.point\", or as the second a place", Object::Need::required)
-      .field("direction", &C::direction, places(), "Of the line, or the plane's normal")
-      .field("length_m", &C::length_m, numbers({0, 1e6}),
-             "Of a rod, 0: as at the start; of a spring, 0: pulls the points together")
-      .field("stiffness_N_per_m", &C::stiffness_N_per_m, numbers(positive(1e12)), "Of a spring")
-      .field("damping_Ns_per_m", &C::damping_Ns_per_m, numbers({0, 1e12}), "Of a spring");
+             "\"body.point\", or as the second a place", Object::Need::required);
+  addSceneTunables<C>(*codec);
   return codec;
 }
 
@@ -279,18 +264,12 @@ CodecPtr<ScenePathDef> pathCodec() {
   using P = ScenePathDef;
   using K = P::Key;
   auto key = std::make_shared<ObjectCodec<K>>("Where the point is at a time.");
-  key->field("time_s", &K::time_s, numbers({0, 86400}), "", ObjectCodec<K>::Need::required)
-      .field("position_m", &K::position_m, places(), "", ObjectCodec<K>::Need::required)
-      .field("velocity_m_per_s", &K::velocity_m_per_s, optionally(places()),
-             "Missing: as smooth as can be")
-      .field("leaving_m_per_s", &K::leaving_m_per_s, optionally(places()),
-             "If another than that of arriving: a bounce, by an impulse");
+  addSceneTunables<K>(*key);
   auto codec = std::make_shared<ObjectCodec<P>>("A keyframed way of a body's point.");
   codec->field("point", &P::point, names(), "\"body.point\"", ObjectCodec<P>::Need::required)
       .field("keys", &P::keys, listOf<K>(key, kMaxListed), "In the order of their times",
-             ObjectCodec<P>::Need::required)
-      .field("preroll_s", &P::preroll_s, numbers({0, 60}),
-             "For so long before the first key the point is led onto the path");
+             ObjectCodec<P>::Need::required);
+  addSceneTunables<P>(*codec);
   return codec;
 }
 
@@ -303,43 +282,29 @@ CodecPtr<SceneCharacterDef> sceneCharacterCodec() {
               Object::Need::required)
       .field("file", &C::file, names(), "A character file in the folder of this file, or below it",
              Object::Need::required)
-      .field("motion", &C::motion, names(), "What it does; missing: its first motion")
-      .field("position_m", &C::position_m, places(), "")
-      .field("heading_deg", &C::heading_rad, std::make_shared<AngleCodec>(), "Turned about y")
-      .field("friction", &C::friction, numbers(kFrictions), "Of its flesh");
+      .field("motion", &C::motion, names(), "What it does; missing: its first motion");
+  addSceneTunables<C>(*codec);
   return codec;
 }
 
 CodecPtr<GroundDef> groundCodec() {
   auto codec = std::make_shared<ObjectCodec<GroundDef>>("A level floor that bodies collide with.");
-  codec->field("height_m", &GroundDef::height_m, numbers(kLengths), "")
-      .field("friction", &GroundDef::friction, numbers(kFrictions), "Coulomb's coefficient");
+  addSceneTunables<GroundDef>(*codec);
   return codec;
 }
 
 CodecPtr<ViewDef> viewCodec() {
   auto codec = std::make_shared<ObjectCodec<ViewDef>>("What a picture shows by itself.");
-  codec
-      ->field("camera", &ViewDef::camera, texts(200),
-              "As on the command line; missing: front in two dimensions, else three-quarter")
-      .field("low_m", &ViewDef::low_m, places(), "A corner of the box that is to be seen")
-      .field("high_m", &ViewDef::high_m, places(), "The other; missing: all that moves is seen");
+  codec->field("camera", &ViewDef::camera, texts(200),
+               "As on the command line; missing: front in two dimensions, else three-quarter");
+  addSceneTunables<ViewDef>(*codec);
   return codec;
 }
 
 CodecPtr<SceneSimulationDef> sceneSimulationCodec() {
   using S = SceneSimulationDef;
   auto codec = std::make_shared<ObjectCodec<S>>("How time passes.");
-  codec->field("duration_s", &S::duration_s, numbers({1e-3, 3600}), "What a bake takes by itself")
-      .field("frame_rate_hz", &S::frame_rate_hz, numbers({1, 1000}), "Frames that a bake writes")
-      .field("step_s", &S::step_s, numbers({1e-5, 1.0 / 12}),
-             "At most; a frame is a whole number of steps")
-      .field("scheme", &S::scheme,
-             words<std::string>(
-                 {{"implicit", "implicit"}, {"explicit", "explicit"}, {"energy", "energy"}}),
-             "implicit: stable at any stiffness, damps; energy: keeps energy, without contact; "
-             "explicit: cheap, for soft bodies without contact")
-      .field("gravity_m_per_s2", &S::gravity_m_per_s2, vectors({-1000, 1000}), "y is up");
+  addTunables<S>(*codec);
   return codec;
 }
 
@@ -354,7 +319,7 @@ CodecPtr<SceneDef> sceneCodec() {
       "kilograms, seconds; angles in degrees; y is up.");
   codec->field("name", &S::name, names(), "The scene's name", Object::Need::required)
       .field("description", &S::description, texts(100'000), "For people")
-      .field("dimension", &S::dimension, integers(2, 3), "Of all bodies")
+      .field("dimension", &S::dimension, integers({2, 3}), "Of all bodies")
       .field("bodies", &S::bodies,
              listOf<SceneBodyDef>(std::make_shared<SceneBodyCodec>(), kMostBodies), "")
       .field("places", &S::places, std::make_shared<NamedPlacesCodec>(),
@@ -365,7 +330,7 @@ CodecPtr<SceneDef> sceneCodec() {
       .field("characters", &S::characters, listOf(sceneCharacterCodec(), 64), "")
       .field("props", &S::props,
              listOf<PlacedSolidDef>(
-                 std::make_shared<PlacedSolidCodec>(PlacedSolidCodec::Role::prop), kMaxSolids),
+                 std::make_shared<PlacedSolidCodec>(PlacedSolidCodec::Role::prop), kMostSolids),
              "Rigid solids that stand")
       .field("ground", &S::ground, optionally(groundCodec()), "")
       .field("view", &S::view, viewCodec(), "")

@@ -83,7 +83,9 @@ SceneFile readSceneFile(const std::string& path, const BuildOptions& options) {
 Stage loadStage(const std::string& path, const BuildOptions& options) {
   SceneFile file = readSceneFile(path, options);
   try {
-    return Stage(std::move(file.def));
+    Stage stage(std::move(file.def));
+    stage.setWarnings(file.lines.locate(stage.warnings()));
+    return stage;
   } catch (const Error& error) {
     throw Error(file.lines.locate(error.issues()));
   }

@@ -1,14 +1,11 @@
 #include <fascia/io/documents/character_codecs.h>
+#include <fascia/io/documents/tunable_fields.h>
 
 namespace fascia {
 namespace {
 
 constexpr Dof kDofs[] = {Dof::tx, Dof::ty, Dof::tz, Dof::rx, Dof::ry, Dof::rz};
 constexpr double kUnlimited = 1e9;  // the default of DofDef's min and max, in memory's units
-
-NumberRange dofRange(Dof dof) {
-  return isRotation(dof) ? NumberRange{-36000, 36000} : NumberRange{-1e6, 1e6};
-}
 
 // {"rx": [-30, 30], "ty": {"min_m": 0, "max_m": 1, "rest_m": 0.5}, "rz": {}}: {} has no limits.
 class DofsCodec final : public Codec<std::vector<DofDef>> {
@@ -102,10 +99,10 @@ class DofsCodec final : public Codec<std::vector<DofDef>> {
     pair.set("description", isRotation(dof) ? "[min, max] in degrees" : "[min, max] in metres");
     pair.set("minItems", 2);
     pair.set("maxItems", 2);
-    pair.set("items", dofRange(dof).schema());
+    pair.set("items", numberSchema(dofInfo(dof).range));
     Json properties;
     for (const char* key : {"min", "max", "rest"}) {
-      properties.set(key + unit, dofRange(dof).schema());
+      properties.set(key + unit, numberSchema(dofInfo(dof).range));
     }
     Json full;
     full.set("type", "object");
@@ -132,8 +129,9 @@ Json dofJson(Dof dof, double value) {
 
 bool readDofValue(Dof dof, const Json& json, const JsonPath& path, Reading& reading,
                   double& value) {
-  return isRotation(dof) ? readAngle(json, path, reading, dofRange(dof), value)
-                         : readNumber(json, path, reading, dofRange(dof), value);
+  const NumberRange& range = dofInfo(dof).range;
+  return isRotation(dof) ? readAngle(json, path, reading, range, value)
+                         : readNumber(json, path, reading, range, value);
 }
 
 CodecPtr<Dof> dofCodec() {
@@ -146,12 +144,10 @@ CodecPtr<JointDef> jointCodec() {
   using Object = ObjectCodec<JointDef>;
   auto codec = std::make_shared<Object>("A joint: a frame in its parent's frame.");
   codec->field("name", &JointDef::name, names(), "The joint's name", Object::Need::required)
-      .field("parent", &JointDef::parent, texts(200), "The parent's name; none for the root")
-      .field("offset_m", &JointDef::offset_m, vectors({-1e6, 1e6}), "From the parent's origin")
-      .field("orientation_deg", &JointDef::orientation_rad, angleVectors(),
-             "Turns about x, y, z at rest; applied as Rz Ry Rx")
-      .field("dofs", &JointDef::dofs, std::make_shared<DofsCodec>(),
-             "Degrees of freedom: translation first, then Rz Ry Rx");
+      .field("parent", &JointDef::parent, texts(200), "The parent's name; none for the root");
+  addTunables<JointDef>(*codec);
+  codec->field("dofs", &JointDef::dofs, std::make_shared<DofsCodec>(),
+               "Degrees of freedom: translation first, then Rz Ry Rx");
   return codec;
 }
 

@@ -1,12 +1,13 @@
 #include <fascia/io/documents/character_codecs.h>
+#include <fascia/io/documents/tunable_fields.h>
 
 namespace fascia {
 namespace {
 
-Json pairSchema(Json item, const std::string& help) {
+Json pairSchema(Json item, std::string_view help) {
   Json out;
   out.set("type", "array");
-  out.set("description", help);
+  out.set("description", std::string(help));
   out.set("minItems", 2);
   out.set("maxItems", 2);
   out.set("items", std::move(item));
@@ -41,81 +42,17 @@ CodecPtr<SkinQuantity> quantityCodec() {
 CodecPtr<SkinEndDef> endCodec() {
   using Object = ObjectCodec<SkinEndDef>;
   auto codec = std::make_shared<Object>("An end of the tube: a small ring fixed to a joint.");
-  codec
-      ->field("joint", &SkinEndDef::joint, names(), "The joint that holds it",
-              Object::Need::required)
-      .field("position_m", &SkinEndDef::position_m, vectors({-1e6, 1e6}), "In the joint's frame")
-      .field("axis", &SkinEndDef::axis, vectors({-1e6, 1e6}),
-             "Towards the end, in the joint's frame; none: away from the other end")
-      .field("radius_m", &SkinEndDef::radius_m, numbers({0, 1000}),
-             "Of the ring; 0: 0.022 of the distance of the two ends");
+  codec->field("joint", &SkinEndDef::joint, names(), "The joint that holds it",
+               Object::Need::required);
+  addTunables<SkinEndDef>(*codec);
   return codec;
 }
 
-CodecPtr<SkinMaterialDef> materialCodec() {
-  using M = SkinMaterialDef;
-  auto codec = std::make_shared<ObjectCodec<M>>("Per square metre of skin at rest.");
-  codec
-      ->field("density_kg_per_m2", &M::density_kg_per_m2, numbers({0.01, 1000}),
-              "Heavier: more follow-through")
-      .field("stretch_u_N_per_m", &M::stretch_u_N_per_m, numbers(positive(1e6)),
-             "Stiffness around the tube")
-      .field("stretch_v_N_per_m", &M::stretch_v_N_per_m, numbers(positive(1e6)),
-             "Stiffness along the tube")
-      .field("shear_N_per_m", &M::shear_N_per_m, numbers({0, 1e6}), "Stiffness against shear")
-      .field("bending_Nm", &M::bending_Nm, numbers({0, 1e3}), "0: a pure membrane")
-      .field("drag_Ns_per_m3", &M::drag_Ns_per_m3, numbers({0, 1e5}), "Damps all motion")
-      .field("prestretch", &M::prestretch, numbers({0.5, 3}), "Above 1: a taut stocking")
-      .field("max_stretch", &M::max_stretch, numbers({1.01, 4}),
-             "Beyond it the stress no longer grows")
-      .field("friction_per_s", &M::friction_per_s, numbers({0, 1e4}),
-             "Rate at which sliding on flesh dies away")
-      .field("restitution", &M::restitution, numbers({0, 1}), "Bounce off the flesh");
-  return codec;
-}
-
-CodecPtr<SkinFatDef> fatCodec() {
-  auto codec = std::make_shared<ObjectCodec<SkinFatDef>>("Between flesh and skin.");
-  codec
-      ->field("thickness_m", &SkinFatDef::thickness_m, numbers({0, 1}),
-              "Its thickness; on a rig at most, and never more than lies between mesh and flesh")
-      .field("compressible", &SkinFatDef::compressible, numbers({0, 0.95}),
-             "Share of the thickness that pressing can take away")
-      .field("bulk_Pa", &SkinFatDef::bulk_Pa, numbers({0, 1e5}),
-             "Resistance of each solid's fat to a change of its volume");
-  return codec;
-}
-
-CodecPtr<SkinTissueDef> tissueCodec() {
-  using T = SkinTissueDef;
-  auto codec = std::make_shared<ObjectCodec<T>>("The strands that hold the skin to the flesh.");
-  codec
-      ->field("stiffness_N_per_m3", &T::stiffness_N_per_m3, numbers({0, 1e8}),
-              "Pull per metre beyond rest, per square metre")
-      .field("damping_Ns_per_m3", &T::damping_Ns_per_m3, numbers({0, 1e6}),
-             "Damping along a strand")
-      .field("carry", &T::carry, numbers({0, 1}),
-             "share of the flesh's changes of velocity that the skin takes over at once: 0 shakes "
-             "like jelly, 1 not at all")
-      .field("rest_length_m", &T::rest_length_m, optionally(numbers({0, 1})),
-             "None: the length at attachment");
-  return codec;
-}
-
-CodecPtr<SkinPoseDef> poseCodec() {
-  using P = SkinPoseDef;
-  auto codec = std::make_shared<ObjectCodec<P>>("How the rig's mesh follows its joints.");
-  codec
-      ->field("jiggle", &P::jiggle, numbers({0, 1}),
-              "Flesh that moves by itself: 0 none, 0.5 as flesh is, 1 jelly")
-      .field("muscle", &P::muscle, numbers({0, 1}),
-             "Flexors that swell in a bend: 0 none, 0.3 natural, 1 bodybuilder")
-      .field("volume", &P::volume, numbers({0, 1}),
-             "Share of what a bend takes from a joint that comes out around it")
-      .field("tightness", &P::tightness, numbers({0, 1}),
-             "How far the skin evens out: 0 slack, 1 taut")
-      .field("simulate", &P::simulate, booleans(),
-             "Beyond the pose: elastic skin of the material and tissue here hangs on it");
+// An object of nothing but the rows of its table.
+template <class T>
+CodecPtr<T> tunablesCodec(const char* help) {
+  auto codec = std::make_shared<ObjectCodec<T>>(help);
+  addTunables<T>(*codec);
   return codec;
 }
 
@@ -127,9 +64,8 @@ CodecPtr<SkinRegionDef::Edit> editCodec() {
       .field(
           "mode", &E::mode,
           words<E::Mode>({{E::Mode::set, "set"}, {E::Mode::scale, "scale"}, {E::Mode::add, "add"}}),
-          "Set to the value, multiply by it, or add it")
-      .field("value", &E::value, numbers({-1e8, 1e8}), "In the quantity's SI unit; scale: a factor",
-             Object::Need::required);
+          "Set to the value, multiply by it, or add it");
+  addTunables<E>(*codec);
   return codec;
 }
 
@@ -140,7 +76,7 @@ class RegionCodec final : public ObjectCodec<SkinRegionDef> {
     field("name", &R::name, names(), "The region's name", Need::required);
     field("solid", &R::solid, texts(200), "Instead of u and v: all points anchored to this solid");
     field("joint", &R::joint, texts(200), "Instead, on a rig: by the weights of this joint");
-    field("feather", &R::feather, numbers({0, 0.5}), "Width of the smooth border in u and v");
+    addTunables<R>(*this);
     field("edits", &R::edits, listOf<R::Edit>(editCodec(), kMaxListed), "What differs");
   }
 
@@ -150,8 +86,9 @@ class RegionCodec final : public ObjectCodec<SkinRegionDef> {
     const bool u = member.key == "u";
     if (!u && member.key != "v") return false;
     if (!expectPair(member.value, path, reading)) return true;
-    readNumber(member.value.list()[0], path[0], reading, {0, 1}, u ? region.u_min : region.v_min);
-    readNumber(member.value.list()[1], path[1], reading, {0, 1}, u ? region.u_max : region.v_max);
+    const NumberRange& range = u ? kRegionU.range : kRegionV.range;
+    readNumber(member.value.list()[0], path[0], reading, range, u ? region.u_min : region.v_min);
+    readNumber(member.value.list()[1], path[1], reading, range, u ? region.u_max : region.v_max);
     return true;
   }
   void writeOthers(const SkinRegionDef& region, Json& out) const override {
@@ -163,10 +100,8 @@ class RegionCodec final : public ObjectCodec<SkinRegionDef> {
     }
   }
   void schemaOthers(Json& properties) const override {
-    const Json item = NumberRange{0, 1}.schema();
-    properties.set("u", pairSchema(item, "Around, [from, to] in 0 to 1; from > to wraps around"));
-    properties.set("v",
-                   pairSchema(item, "Along, [from, to] from the bottom end (0) to the top (1)"));
+    for (const TunableInfo& row : {kRegionU, kRegionV})
+      properties.set(std::string(row.key), pairSchema(numberSchema(row.range), row.help));
   }
 };
 
@@ -175,10 +110,8 @@ CodecPtr<SkinBrushDef> brushCodec() {
   using Object = ObjectCodec<B>;
   auto codec = std::make_shared<Object>("A Gaussian dab on one quantity.");
   codec->field("quantity", &B::quantity, quantityCodec(), "What")
-      .field("joint", &B::joint, names(), "In whose frame the centre is", Object::Need::required)
-      .field("center_m", &B::center_m, vectors({-1e6, 1e6}), "In the joint's frame, rest posture")
-      .field("radius_m", &B::radius_m, numbers(positive(1000)), "One standard deviation")
-      .field("amount", &B::amount, numbers({-1e8, 1e8}), "Added at the centre; never below 0");
+      .field("joint", &B::joint, names(), "In whose frame the centre is", Object::Need::required);
+  addTunables<B>(*codec);
   return codec;
 }
 
@@ -186,19 +119,8 @@ CodecPtr<SkinAnchorDef> anchorCodec() {
   using A = SkinAnchorDef;
   using Object = ObjectCodec<A>;
   auto codec = std::make_shared<Object>("One strand's end, moved by hand.");
-  codec->field("u", &A::u, numbers({0, 1}), "Around", Object::Need::required)
-      .field("v", &A::v, numbers({0, 1}), "Along", Object::Need::required)
-      .field("solid", &A::solid, names(), "The solid it holds to", Object::Need::required)
-      .field("position_m", &A::position_m, vectors({-1e6, 1e6}),
-             "In the solid's frame; put onto its surface");
-  return codec;
-}
-
-CodecPtr<SkinContactDef> contactCodec() {
-  using C = SkinContactDef;
-  auto codec = std::make_shared<ObjectCodec<C>>("The skin against itself.");
-  codec->field("self", &C::self, booleans(), "Whether sheets of skin keep out of each other")
-      .field("gap_m", &C::gap_m, numbers(positive(1)), "Kept between two of them");
+  addTunables<A>(*codec);
+  codec->field("solid", &A::solid, names(), "The solid it holds to", Object::Need::required);
   return codec;
 }
 
@@ -206,8 +128,8 @@ CodecPtr<SkinPartDef> partCodec() {
   using P = SkinPartDef;
   using Object = ObjectCodec<P>;
   auto codec = std::make_shared<Object>("What becomes of a piece of the rig's mesh.");
-  codec->field("name", &P::name, names(), "Of the mesh or of its material", Object::Need::required)
-      .field("rigid", &P::rigid, booleans(), "Carried by its joints as it is");
+  codec->field("name", &P::name, names(), "Of the mesh or of its material", Object::Need::required);
+  addTunables<P>(*codec);
   return codec;
 }
 
@@ -217,12 +139,14 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
     using S = SkinDef;
     field("bottom", &S::bottom, endCodec(), "The first row; none on a rig");
     field("top", &S::top, endCodec(), "The last row; none on a rig");
-    field("material", &S::material, materialCodec(), "");
-    field("fat", &S::fat, fatCodec(), "");
-    field("tissue", &S::tissue, tissueCodec(), "");
-    field("pose", &S::pose, poseCodec(), "");
-    field("cling", &S::cling, numbers({0, 1}),
-          "How far the skin follows hollows: 0 spans them like a stocking, 1 fills every valley");
+    field("material", &S::material,
+          tunablesCodec<SkinMaterialDef>("Per square metre of skin at rest."), "");
+    field("fat", &S::fat, tunablesCodec<SkinFatDef>("Between flesh and skin."), "");
+    field("tissue", &S::tissue,
+          tunablesCodec<SkinTissueDef>("The strands that hold the skin to the flesh."), "");
+    field("pose", &S::pose, tunablesCodec<SkinPoseDef>("How the rig's mesh follows its joints."),
+          "");
+    addTunables<S>(*this);
     field("texture", &S::texture, texts(1000),
           "A PNG or JPEG in the folder of this file, or below it");
     field("color", &S::color, colorArrays(), "Where there is no texture");
@@ -233,7 +157,7 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
     field("points", &S::points, optionally(skinPointsCodec()),
           "Values per point, row by row from the bottom, in place of the above; on a rig one row "
           "in the order of its points");
-    field("contact", &S::contact, contactCodec(), "");
+    field("contact", &S::contact, tunablesCodec<SkinContactDef>("The skin against itself."), "");
     field("parts", &S::parts, listOf(partCodec(), kMaxListed),
           "Pieces of the rig's mesh that are to stay as they are: armour, buckles");
   }
@@ -255,20 +179,20 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
     if (!expectPair(member.value, path, reading)) return true;
     side_->read(member.value.list()[0], path[0], reading, skin.columns);
     side_->read(member.value.list()[1], path[1], reading, skin.rows);
-    if (skin.columns > kMaxGridPoints / skin.rows) {
-      reading.fault(member.value, path, "more than " + std::to_string(kMaxGridPoints) + " points");
+    if (skin.columns > kMostGridPoints / skin.rows) {
+      reading.fault(member.value, path, "more than " + std::to_string(kMostGridPoints) + " points");
     }
     return true;
   }
   void offerOthers(const Json&, NearestName& nearest) const override { nearest.offer("grid"); }
   void schemaOthers(Json& properties) const override {
-    Json grid = pairSchema(side_->schema(), "[columns around, rows along]");
+    Json grid = pairSchema(side_->schema(), kGridSide.help);
     grid.set("default", Json::List{SkinDef{}.columns, SkinDef{}.rows});
     properties.set("grid", std::move(grid));
   }
 
  private:
-  CodecPtr<int> side_ = integers(8, kMaxGridSide);
+  CodecPtr<int> side_ = integers(kGridSide.range);
 };
 
 }  // namespace

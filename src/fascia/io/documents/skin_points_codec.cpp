@@ -3,6 +3,7 @@
 #include <span>
 
 #include <fascia/io/documents/character_codecs.h>
+#include <fascia/skin/point/quantities.h>
 
 namespace fascia {
 namespace {
@@ -46,7 +47,7 @@ bool inRange(const NumberRange& range, float value) {
   return range.contains(value);
 }
 bool inRange(const NumberRange& range, int value) {
-  return range.contains(value);
+  return range.contains(static_cast<double>(value));
 }
 bool inRange(const NumberRange& range, const Triple& value) {
   return inRange(range, value[0]) && inRange(range, value[1]) && inRange(range, value[2]);
@@ -156,25 +157,6 @@ Json rowsJson(const std::vector<T>& values, const SkinPointsDef& grid, const std
   return out;
 }
 
-struct FloatList {
-  const char* name;
-  std::vector<float> SkinPointsDef::*member;
-  NumberRange range;
-};
-const FloatList kFloatLists[] = {
-    {"density_kg_per_m2", &SkinPointsDef::density, {0.01, 1000}},
-    {"stretch_u_N_per_m", &SkinPointsDef::stretch_u, positive(1e6)},
-    {"stretch_v_N_per_m", &SkinPointsDef::stretch_v, positive(1e6)},
-    {"shear_N_per_m", &SkinPointsDef::shear, {0, 1e6}},
-    {"bending_Nm", &SkinPointsDef::bending, {0, 1e3}},
-    {"drag_Ns_per_m3", &SkinPointsDef::drag, {0, 1e5}},
-    {"prestretch", &SkinPointsDef::prestretch, {0.5, 3}},
-    {"fat_m", &SkinPointsDef::fat, {0, 1}},
-    {"tissue_stiffness_N_per_m3", &SkinPointsDef::tissue_stiffness, {0, 1e8}},
-    {"tissue_damping_Ns_per_m3", &SkinPointsDef::tissue_damping, {0, 1e6}},
-    {"tissue_rest_length_m", &SkinPointsDef::tissue_rest_length, {0, 1}},
-};
-
 struct TripleList {
   const char* name;
   std::vector<Triple> SkinPointsDef::*member;
@@ -184,7 +166,7 @@ const TripleList kTripleLists[] = {
     {"rest_position_m", &SkinPointsDef::rest_position_m},
 };
 constexpr const char* kAnchorSolid = "anchor_solid";
-constexpr NumberRange kAnchorRange{-1, static_cast<double>(kMaxSolids)};
+constexpr NumberRange kAnchorRange{-1, static_cast<double>(kMostSolids)};
 constexpr NumberRange kPlaceRange{-1e6, 1e6};
 
 class SkinPointsCodec final : public Codec<SkinPointsDef> {
@@ -202,9 +184,10 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
     Json out;
     out.set("columns", value.columns);
     out.set("rows", value.rows);
-    for (const FloatList& list : kFloatLists) {
-      const std::vector<float>& entries = value.*list.member;
-      if (!entries.empty()) out.set(list.name, rowsJson(entries, value, list.name));
+    for (const QuantityInfo& info : quantityInfos()) {
+      const std::vector<float>& entries = pointValues(value, info.quantity);
+      const std::string name(info.listKey);
+      if (!entries.empty()) out.set(name, rowsJson(entries, value, name));
     }
     if (!value.anchor_solid.empty()) {
       out.set(kAnchorSolid, rowsJson(value.anchor_solid, value, kAnchorSolid));
@@ -217,15 +200,16 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
   }
 
   Json schema() const override {
-    Json side = integers(1, kMaxGridPoints)->schema();  // a mesh has one long row
+    Json side = integers({1, kMostGridPoints})->schema();  // a mesh has one long row
     Json properties;
     properties.set("columns", side);
     properties.set("rows", side);
-    for (const FloatList& list : kFloatLists) {
+    for (const QuantityInfo& info : quantityInfos()) {
       Json either;
       either.set("description", "One number for all, or a text per row: \"0.01*12 0.012\"");
-      either.set("anyOf", Json::List{list.range.schema(), rowsSchema("One text per row")});
-      properties.set(list.name, std::move(either));
+      either.set("anyOf",
+                 Json::List{numberSchema(info.uniform.range), rowsSchema("One text per row")});
+      properties.set(std::string(info.listKey), std::move(either));
     }
     properties.set(kAnchorSolid, rowsSchema("Index of each point's solid; -1: no tissue"));
     properties.set("anchor", rowsSchema("Material coordinates x,y,z on that solid"));
@@ -247,14 +231,14 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
     Json out;
     out.set("type", "array");
     out.set("description", help);
-    out.set("maxItems", kMaxGridPoints);
+    out.set("maxItems", kMostGridPoints);
     out.set("items", std::move(item));
     return out;
   }
 
   static bool readGrid(const Json& json, const JsonPath& path, Reading& reading,
                        SkinPointsDef& value) {
-    const CodecPtr<int> side = integers(1, kMaxGridPoints);
+    const CodecPtr<int> side = integers({1, kMostGridPoints});
     for (const auto& [name, target] :
          {std::pair{"columns", &value.columns}, std::pair{"rows", &value.rows}}) {
       const Json* found = json.find(name);
@@ -265,8 +249,8 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
       side->read(*found, path[std::string_view(name)], reading, *target);
     }
     if (value.columns < 1 || value.rows < 1) return false;
-    if (value.columns <= kMaxGridPoints / value.rows) return true;
-    reading.fault(json, path, "more than " + std::to_string(kMaxGridPoints) + " points");
+    if (value.columns <= kMostGridPoints / value.rows) return true;
+    reading.fault(json, path, "more than " + std::to_string(kMostGridPoints) + " points");
     return false;
   }
 
@@ -274,11 +258,12 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
                          SkinPointsDef& value) {
     if (member.key == "columns" || member.key == "rows") return;
     NearestName nearest(member.key);
-    for (const FloatList& list : kFloatLists) {
-      if (member.key == list.name) {
-        return readRows(member.value, path, reading, list.range, value, value.*list.member);
+    for (const QuantityInfo& info : quantityInfos()) {
+      if (member.key == info.listKey) {
+        return readRows(member.value, path, reading, info.uniform.range, value,
+                        pointValues(value, info.quantity));
       }
-      nearest.offer(list.name);
+      nearest.offer(info.listKey);
     }
     for (const TripleList& list : kTripleLists) {
       if (member.key == list.name) {

@@ -1,6 +1,7 @@
 #include <fascia/io/documents/body_codec.h>
 #include <fascia/io/documents/character_codecs.h>
 #include <fascia/io/documents/solid_members.h>
+#include <fascia/io/documents/tunable_fields.h>
 
 namespace fascia {
 namespace {
@@ -45,6 +46,11 @@ class DriverCodec final : public ObjectCodec<DriverDef> {
     const Dof dof = dofFromName(textOf(whole, "dof", "rx")).value_or(Dof::rx);
     const std::string parameter = memoryName(textOf(whole, "parameter", {}));
     const Json::List& points = member.value.list();
+    if (points.size() < 2 || points.size() > DriverDef::kMost) {
+      reading.unexpected(member.value, path,
+                         "2 to " + std::to_string(DriverDef::kMost) + " points");
+      return true;
+    }
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Json& pair = points[i];
       if (!pair.is(Json::Kind::list) || pair.list().size() != 2) {
@@ -54,7 +60,7 @@ class DriverCodec final : public ObjectCodec<DriverDef> {
       DriverDef::Point point{};
       const JsonPath at = path[i];
       readDofValue(dof, pair.list()[0], at[0], reading, point.jointValue);
-      readParameter(parameter, pair.list()[1], at[1], reading, {}, point.parameter);
+      readParameter(parameter, pair.list()[1], at[1], reading, kKeyValue.range, point.parameter);
       driver.points.push_back(point);
     }
     return true;
@@ -68,7 +74,7 @@ class DriverCodec final : public ObjectCodec<DriverDef> {
     pair.set("type", "array");
     pair.set("minItems", 2);
     pair.set("maxItems", 2);
-    pair.set("items", NumberRange{}.schema());
+    pair.set("items", numberSchema({}));
     Json points;
     points.set("type", "array");
     points.set(
@@ -76,6 +82,7 @@ class DriverCodec final : public ObjectCodec<DriverDef> {
         "[joint value, parameter] with increasing joint value: degrees for rotations, metres "
         "for translations; constant outside");
     points.set("minItems", 2);
+    points.set("maxItems", static_cast<int>(DriverDef::kMost));
     points.set("items", std::move(pair));
     properties.set("points", std::move(points));
   }
@@ -94,14 +101,13 @@ class DriverCodec final : public ObjectCodec<DriverDef> {
 };
 
 CodecPtr<SoftSolidDef> softCodec() {
-  constexpr std::size_t kMaxHeld = 64;
   auto codec = std::make_shared<ObjectCodec<SoftSolidDef>>(
       "This solid is a soft body that sags, lags and jiggles (Witkin & Welch 1990).");
   codec->field("basis", &SoftSolidDef::basis, bodyBasisCodec(),
                "Which shapes it takes: affine stretches and shears, quadratic bends too");
-  addMaterialFields(*codec);
+  addTunables<BodyMaterialDef>(*codec);
   codec->field("held_m", &SoftSolidDef::held_m,
-               listOf<Vec3>(vectors({-1e6, 1e6}), kMaxHeld, Vec3::Zero()),
+               listOf<Vec3>(vectors({-1e6, 1e6}), kMostHeldPoints, Vec3::Zero()),
                "Points in the solid's frame that the joint carries; otherwise some at the end "
                "nearest to the joint");
   return codec;
@@ -112,9 +118,7 @@ class SolidCodec final : public SolidOwnerCodec<FleshSolidDef> {
   SolidCodec() : SolidOwnerCodec("A solid on a joint, with the parameters of its shape.") {
     field("name", &FleshSolidDef::name, names(), "The solid's name", Need::required);
     field("joint", &FleshSolidDef::joint, names(), "The joint it moves with", Need::required);
-    field("position_m", &FleshSolidDef::position_m, vectors({-1e6, 1e6}), "In the joint's frame");
-    field("orientation_deg", &FleshSolidDef::orientation_rad, angleVectors(),
-          "Turns about x, y, z; applied as Rz Ry Rx");
+    addTunables<FleshSolidDef>(*this);
     field("color", &FleshSolidDef::color, colors(), "Its colour in the layer view");
     field("drivers", &FleshSolidDef::drivers,
           listOf<DriverDef>(std::make_shared<DriverCodec>(), kMaxListed),

@@ -26,8 +26,6 @@ class WholeFile {
   void write(std::string_view text) { write(text.data(), text.size()); }
   void commit();  // throws Error; the old file, if any, is replaced in one step
 
-  const std::string& temporaryPath() const { return temporary_; }
-
  private:
   [[noreturn]] void fail(const char* what);
 

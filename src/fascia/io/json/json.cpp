@@ -4,24 +4,15 @@
 #include <charconv>
 #include <cmath>
 
+#include <fascia/base/tunable.h>
+
 namespace fascia {
 namespace {
 
 template <class T>
 std::string digitsOf(T value) {
   if (!std::isfinite(value)) throw Error("a value is not a finite number and cannot be written");
-  if (value == 0 && std::signbit(value)) return "-0.0";  // "-0" would be read as an integer
-  char buffer[48];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-  std::string digits(buffer, end);
-  const std::size_t exponent = digits.find('e');  // "1e+06": people write 1e6
-  if (exponent != std::string::npos) {
-    if (digits[exponent + 1] == '+') digits.erase(exponent + 1, 1);
-    const std::size_t first = digits.find_first_of("123456789", exponent + 1);
-    const std::size_t sign = digits[exponent + 1] == '-' ? 2 : 1;
-    digits.erase(exponent + sign, first - exponent - sign);
-  }
-  return digits;
+  return shortestText(value);
 }
 
 }  // namespace

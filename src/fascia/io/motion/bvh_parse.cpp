@@ -13,7 +13,7 @@ namespace {
 // What a stranger's file may cost us.
 constexpr std::size_t kMaxJoints = 4096;
 constexpr double kLargestValue = 1e9;  // no length or angle in any unit is larger
-constexpr double kLongestFrame_s = 1000;
+constexpr double kLongestFrameTime_s = 1000;
 
 constexpr std::pair<std::string_view, BvhChannel> kChannels[] = {
     {"xposition", BvhChannel::xPosition}, {"yposition", BvhChannel::yPosition},
@@ -211,7 +211,7 @@ class Parser {
     words_.expect("Frame");
     words_.expect("Time:");
     motion_.frameTime_s = words_.number("a time in seconds");
-    if (!(motion_.frameTime_s > 0) || motion_.frameTime_s > kLongestFrame_s) {
+    if (!(motion_.frameTime_s > 0) || motion_.frameTime_s > kLongestFrameTime_s) {
       words_.fail("found a frame time of " + shortNumber(motion_.frameTime_s) +
                   ", expected seconds in (0, 1000]");
     }

@@ -1,8 +1,11 @@
 #include <fascia/math/cholesky/graph.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia::cholesky {
 
 Graph graphOf(const SparseMatrix& a) {
+  FASCIA_ASSERT(a.rows() == a.cols(), "the matrix is square");
   const auto n = static_cast<std::size_t>(a.rows());
   const auto forEachEdge = [&a](const auto& use) {
     for (int column = 0; column < a.cols(); ++column)
@@ -23,6 +26,7 @@ Graph graphOf(const SparseMatrix& a) {
     graph.neighbours[static_cast<std::size_t>(next[row]++)] = column;
     graph.neighbours[static_cast<std::size_t>(next[c]++)] = static_cast<int>(row);
   });
+  FASCIA_ASSERT(areBelow(graph.neighbours, n), "neighbours are nodes");
   return graph;
 }
 

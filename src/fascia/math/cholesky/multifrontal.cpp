@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/index.h>
 #include <fascia/base/parallel.h>
 
@@ -20,6 +21,8 @@ class Multifrontal {
  public:
   Multifrontal(const SparseMatrix& a, const Supernodes& supernodes, const TakeColumns& take)
       : nodes_(supernodes.nodes), take_(take), updates_(nodes_.size()), children_(nodes_.size()) {
+    FASCIA_ASSERT(at(static_cast<int>(a.rows())) == supernodes.order.size(),
+                  "the supernodes are of this matrix");
     const auto n = static_cast<Eigen::Index>(supernodes.order.size());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> place(n);
     for (Eigen::Index k = 0; k < n; ++k)
@@ -40,6 +43,7 @@ class Multifrontal {
   bool eliminate(int s, Memory& memory) {
     const Supernode& node = nodes_[at(s)];
     assemble(s, memory);
+    FASCIA_ASSERT(memory.front.rows() >= node.width, "a front holds its own columns");
     Matrix& front = memory.front;
     const Eigen::Index w = node.width, m = front.rows() - w;
     auto triangle = front.topLeftCorner(w, w);
@@ -82,6 +86,8 @@ class Multifrontal {
   }
 
   static void addUpdate(const std::vector<int>& rows, const Matrix& update, Memory& memory) {
+    FASCIA_ASSERT(update.rows() == static_cast<Eigen::Index>(rows.size()),
+                  "a child left an update of all its rows");
     const auto m = static_cast<Eigen::Index>(rows.size());
     for (Eigen::Index j = 0; j < m; ++j) {
       double* column = &memory.front(0, memory.local[at(rows[static_cast<std::size_t>(j)])]);

@@ -6,6 +6,7 @@
 
 #include <Eigen/OrderingMethods>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/index.h>
 #include <fascia/base/parallel.h>
 #include <fascia/math/cholesky/separator.h>
@@ -37,6 +38,7 @@ class Dissection {
  private:
   // Orders the nodes of each connected component on its own.
   void orderComponents(const std::vector<int>& nodes, std::span<int> order) {
+    FASCIA_ASSERT(nodes.size() == order.size(), "every node gets a place");
     for (const int node : nodes) local_[at(node)] = 0;
     std::vector<std::vector<int>> components;
     std::vector<std::span<int>> places;
@@ -59,8 +61,10 @@ class Dissection {
   }
 
   void orderConnected(const std::vector<int>& nodes, std::span<int> order) {
+    FASCIA_ASSERT(nodes.size() == order.size(), "every node gets a place");
     if (nodes.size() <= kLeafSize) return orderLeaf(nodes, order);
     const std::vector<Side> side = findSeparator(inducedBy(nodes));
+    FASCIA_ASSERT(side.size() == nodes.size(), "every node has a side");
     std::vector<int> parts[3];
     for (std::size_t k = 0; k < nodes.size(); ++k)
       parts[static_cast<std::size_t>(side[k])].push_back(nodes[k]);

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <queue>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/index.h>
 #include <fascia/base/random.h>
 
@@ -257,6 +258,8 @@ std::vector<int> match(const WeightedGraph& graph, Random& random, int& coarseSi
 }
 
 WeightedGraph contract(const WeightedGraph& graph, const std::vector<int>& coarse, int coarseSize) {
+  FASCIA_ASSERT(coarse.size() == at(graph.size()) && areBelow(coarse, coarseSize),
+                "every node has a coarse one");
   WeightedGraph result;
   result.weight.assign(at(coarseSize), 0);
   std::vector<int> members[2] = {std::vector<int>(at(coarseSize), -1),
@@ -297,6 +300,7 @@ std::vector<Side> separate(const WeightedGraph& graph, Random& random) {
   // Where hardly anything matches, further levels would cost time and gain nothing.
   if (10 * coarseSize > 9 * graph.size()) return separateCoarsest(graph);
   const std::vector<Side> rough = separate(contract(graph, coarse, coarseSize), random);
+  FASCIA_ASSERT(rough.size() == at(coarseSize), "every coarse node has a side");
   std::vector<Side> side(coarse.size());
   for (std::size_t v = 0; v < coarse.size(); ++v) side[v] = rough[at(coarse[v])];
   Refinement(graph, side).run();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/index.h>
 
 namespace fascia::cholesky {
@@ -32,6 +33,7 @@ Tasks splitIntoTasks(const Supernodes& supernodes) {
     const int parent = nodes[at(s)].parent;
     if (parent < 0) continue;
     work[at(parent)] += work[at(s)];
+    FASCIA_ASSERT(parent > s, "parents come after their children");
     first[at(parent)] = std::min(first[at(parent)], first[at(s)]);
   }
   const double most = std::max(kSmallest, kShare * all);

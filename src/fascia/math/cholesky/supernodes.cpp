@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/index.h>
 
 namespace fascia::cholesky {
 namespace {
 
 std::vector<int> inverse(const std::vector<int>& order) {
+  FASCIA_ASSERT(areBelow(order, order.size()), "an order numbers its own entries");
   std::vector<int> place(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) place[at(order[k])] = static_cast<int>(k);
   return place;
@@ -43,6 +45,7 @@ std::vector<int> postorder(const std::vector<int>& parent) {
 
 // Parent of each column in the elimination tree (Liu 1986), columns numbered by elimination.
 std::vector<int> eliminationTree(const Graph& graph, const std::vector<int>& order) {
+  FASCIA_ASSERT(order.size() == at(graph.size()), "every node has a place");
   const std::vector<int> place = inverse(order);
   const std::size_t n = order.size();
   std::vector<int> parent(n, -1), ancestor(n, -1);
@@ -63,6 +66,7 @@ std::vector<int> eliminationTree(const Graph& graph, const std::vector<int>& ord
 // Entries of each column of the factor, the diagonal included.
 std::vector<int> columnCounts(const Graph& graph, const std::vector<int>& order,
                               const std::vector<int>& parent) {
+  FASCIA_ASSERT(parent.size() == order.size(), "every column has a parent or none");
   const std::vector<int> place = inverse(order);
   const int n = static_cast<int>(order.size());
   std::vector<int> count(at(n), 1), mark(at(n), -1);
@@ -84,6 +88,7 @@ struct Draft {
 };
 
 Draft fundamentalSupernodes(const std::vector<int>& parent, const std::vector<int>& count) {
+  FASCIA_ASSERT(parent.size() == count.size(), "every column is counted");
   Draft draft;
   std::vector<int> owner(parent.size());
   for (std::size_t j = 0; j < parent.size(); ++j) {
@@ -110,6 +115,7 @@ double solveCost(double width, double below) {
 }
 
 void mergeChildren(int node, std::vector<int>& children, Draft& draft) {
+  FASCIA_ASSERT(draft.parent[at(node)] != -2, "only what is left takes in others");
   // Those with the most rows in common first: a merged parent is wider, and its next child gains
   // less.
   std::stable_sort(children.begin(), children.end(),
@@ -203,6 +209,7 @@ void findRowsBelow(const Graph& graph, Supernodes& supernodes) {
 }  // namespace
 
 Supernodes findSupernodes(const Graph& graph, const std::vector<int>& wanted) {
+  FASCIA_ASSERT(wanted.size() == at(graph.size()), "every node is ordered");
   std::vector<int> order(wanted.size());
   const std::vector<int> post = postorder(eliminationTree(graph, wanted));
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = wanted[at(post[k])];
@@ -210,6 +217,7 @@ Supernodes findSupernodes(const Graph& graph, const std::vector<int>& wanted) {
   Draft draft = fundamentalSupernodes(parent, columnCounts(graph, order, parent));
   mergeSmall(draft);
   Supernodes result = numbered(draft, order);
+  FASCIA_ASSERT(result.order.size() == order.size(), "merging loses no column");
   findRowsBelow(graph, result);
   return result;
 }

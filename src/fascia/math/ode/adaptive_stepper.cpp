@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/error.h>
 
 namespace fascia {
@@ -52,6 +53,7 @@ bool allFinite(std::span<const double> x) {
 
 // Cubic Hermite interpolation between two states, s in [0, 1].
 void interpolate(const OdeState& a, const OdeState& b, double s, std::vector<double>& r) {
+  FASCIA_ASSERT(a.r.size() == b.r.size() && s >= 0 && s <= 1, "between two states of one system");
   const double h = b.t_s - a.t_s, u = 1 - s;
   const double aR = u * u * (1 + 2 * s), aV = h * s * u * u;
   const double bR = s * s * (3 - 2 * s), bV = -h * s * s * u;
@@ -70,6 +72,7 @@ AdaptiveStepper::AdaptiveStepper(std::unique_ptr<Integrator> integrator,
 }
 
 void AdaptiveStepper::setIntegrator(std::unique_ptr<Integrator> integrator) {
+  FASCIA_ASSERT(integrator, "there is an integrator");
   integrator_ = std::move(integrator);
   integrator_->setSettings(options_.integrator);
 }
@@ -87,6 +90,8 @@ void AdaptiveStepper::reset() {
 }
 
 void AdaptiveStepper::advance(SecondOrderSystem& system, OdeState& state, double target_s) {
+  FASCIA_ASSERT(state.r.size() == system.size() && state.v.size() == system.size(),
+                "the state fits the system");
   if (!std::isfinite(target_s) || !(state.t_s < target_s)) return;
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
@@ -106,6 +111,8 @@ double AdaptiveStepper::firstTry(double remaining_s, double t_s) const {
 void AdaptiveStepper::step(SecondOrderSystem& system, OdeState& state, double target_s) {
   const double remaining = target_s - state.t_s;
   const std::span<const double> w = system.inverseMass();
+  FASCIA_ASSERT(w.size() == system.size(), "every coordinate has a mass");
+  FASCIA_ASSERT(remaining > 0, "time goes on");
   double h = firstTry(remaining, state.t_s);
   const double shortest =
       std::min(h, std::max(options_.step_min_s, kResolution * std::abs(state.t_s)));
@@ -113,6 +120,7 @@ void AdaptiveStepper::step(SecondOrderSystem& system, OdeState& state, double ta
   for (int contacts = 0;;) {
     const bool last = !(h > shortest);
     const double error = integrator_->step(system, state, h, trial_);
+    FASCIA_ASSERT(trial_.r.size() == state.r.size(), "a step keeps the number of coordinates");
     trial_.t_s = h < remaining ? state.t_s + h : target_s;
     if (const double next = shorter(state, w, h, error, last); next < h) {
       h = std::max(next, shortest);
@@ -239,6 +247,7 @@ double AdaptiveStepper::touchingStep(SecondOrderSystem& system, const OdeState& 
 // Eq. (12), h₁ = h (Δ/ε)^(−1/2), for pairs of any order: the embedded formula of order q has a
 // local error of O(h^(q+1)).
 double AdaptiveStepper::accurateStep(double h, double error) const {
+  FASCIA_ASSERT(h > 0, "steps go forward");
   const double exponent = -1.0 / (integrator_->embeddedOrder() + 1);
   const double ratio = error / options_.tolerance;
   const double factor = ratio > 0 ? kSafety * std::pow(ratio, exponent) : kGrow;
@@ -246,6 +255,8 @@ double AdaptiveStepper::accurateStep(double h, double error) const {
 }
 
 void AdaptiveStepper::accept(OdeState& state, double h, double error, double correction_m) {
+  FASCIA_ASSERT(h > 0 && trial_.t_s > state.t_s, "an accepted step goes forward");
+  FASCIA_ASSERT(allFinite(trial_.r) && allFinite(trial_.v), "an accepted step is finite");
   std::swap(state, trial_);
   ++stats_.steps;
   stats_.step_min_s = std::min(stats_.step_min_s, h);

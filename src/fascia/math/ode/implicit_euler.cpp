@@ -1,3 +1,4 @@
+#include <fascia/base/assert.h>
 #include <fascia/math/ode/implicit_matrix.h>
 #include <fascia/math/ode/integrator.h>
 
@@ -14,6 +15,9 @@ class ImplicitEuler final : public Integrator {
   int embeddedOrder() const override { return 1; }
 
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
+    FASCIA_ASSERT(from.r.size() == system.size() && from.v.size() == system.size(),
+                  "the state fits the system");
+    FASCIA_ASSERT(h > 0, "time goes on");
     const std::size_t n = system.size();
     to.resize(n), force_.resize(n);
     if (acceleration_.size() != n) acceleration_.assign(n, 0.0), matrixStep_s_ = 0;

@@ -1,5 +1,7 @@
 #include <fascia/math/ode/implicit_matrix.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 bool ImplicitMatrix::update(SecondOrderSystem& system, double t_s, std::span<const double> r,
@@ -11,6 +13,8 @@ bool ImplicitMatrix::update(SecondOrderSystem& system, double t_s, std::span<con
   const std::span<const double> inverseMass = system.inverseMass();
   const auto n = static_cast<Eigen::Index>(system.size());
   system.forceJacobian(t_s, r, v, dfdr_, dfdv_);
+  FASCIA_ASSERT(dfdr_.rows() == n && dfdr_.cols() == n, "forces have a column per coordinate");
+  FASCIA_ASSERT(dfdv_.rows() == n && dfdv_.cols() == n, "forces have a column per velocity");
 
   mass_.resize(n, n);
   mass_.setIdentity();

@@ -1,5 +1,7 @@
 #include <fascia/math/ode/integrator.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -10,6 +12,9 @@ class RungeKutta4 final : public Integrator {
   int order() const override { return 4; }
 
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
+    FASCIA_ASSERT(from.r.size() == system.size() && from.v.size() == system.size(),
+                  "the state fits the system");
+    FASCIA_ASSERT(h > 0, "time goes on");
     const std::size_t n = system.size();
     to.resize(n), force_.resize(n), stageR_.resize(n), stageV_.resize(n);
     to.t_s = from.t_s + h;

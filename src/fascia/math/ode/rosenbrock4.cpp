@@ -1,5 +1,6 @@
 #include <array>
 
+#include <fascia/base/assert.h>
 #include <fascia/math/ode/implicit_matrix.h>
 #include <fascia/math/ode/integrator.h>
 
@@ -29,6 +30,9 @@ class Rosenbrock4 final : public Integrator {
   int embeddedOrder() const override { return 3; }
 
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
+    FASCIA_ASSERT(from.r.size() == system.size() && from.v.size() == system.size(),
+                  "the state fits the system");
+    FASCIA_ASSERT(h > 0, "time goes on");
     resize(system.size(), to);
     to.t_s = from.t_s + h;
     const double gammaH_s = kGamma * h;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <fascia/base/assert.h>
 #include <fascia/math/finite_difference.h>
 
 namespace fascia {
@@ -43,6 +44,8 @@ double SecondOrderSystem::project(double, std::span<double>, std::span<double>) 
 
 void evaluateForces(SecondOrderSystem& system, double t_s, std::span<const double> r,
                     std::span<const double> v, std::span<double> f) {
+  FASCIA_ASSERT(r.size() == system.size() && v.size() == r.size() && f.size() == r.size(),
+                "state and forces fit the system");
   std::ranges::fill(f, 0.0);
   system.addPositionForces(t_s, r, f);
   if (system.hasVelocityForces()) system.addVelocityForces(t_s, r, v, f);

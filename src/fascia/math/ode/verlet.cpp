@@ -1,5 +1,7 @@
 #include <fascia/math/ode/integrator.h>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -12,6 +14,9 @@ class Verlet final : public Integrator {
   int embeddedOrder() const override { return 1; }
 
   double step(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) override {
+    FASCIA_ASSERT(from.r.size() == system.size() && from.v.size() == system.size(),
+                  "the state fits the system");
+    FASCIA_ASSERT(h > 0, "time goes on");
     const std::size_t n = system.size();
     to.resize(n), positionForce_.assign(n, 0.0);
     to.t_s = from.t_s + h;

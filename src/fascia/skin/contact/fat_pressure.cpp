@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 namespace {
 
@@ -57,6 +59,8 @@ bool measureLayer(const FatPressureInput& input, const VectorArray& area,
 }  // namespace
 
 FatPressureModel prepareFatPressure(const FatPressureInput& input) {
+  FASCIA_ASSERT(input.solid.size() <= input.rest.size() && input.bulk_Pa > 0,
+                "every point has a solid or none");
   FatPressureModel model;
   model.bulk_Pa = input.bulk_Pa;
   VectorArray area(input.rest.size());
@@ -100,6 +104,7 @@ double FatPressure::pressure(const FatPressureModel::Layer& layer, const StepCoe
                              const PointSurroundings& around, double duration_s,
                              const VectorArray& position, const VectorArray& velocity) const {
   double volume_m3 = 0, rate_m3_per_s = 0, answer = 0;
+  FASCIA_ASSERT(layer.volume_m3 > 0 && duration_s > 0 && step.step_s > 0, "a layer has a volume");
   for (std::size_t i = layer.first; i < std::size_t{layer.first} + layer.count; ++i) {
     const std::size_t k = model_->points[i];
     volume_m3 += double{heightOver(area_, around.anchor, position, k)};
@@ -120,6 +125,8 @@ const VectorArray& FatPressure::press(const StepCoefficients& step, const PointS
                                       double duration_s, const VectorArray& position,
                                       const VectorArray& velocity) {
   areaVectors(model_->triangles, position, area_);
+  FASCIA_ASSERT(position.size() == area_.size() && velocity.size() == area_.size(),
+                "the state is of this skin");
   for (std::size_t l = 0; l < model_->layers.size(); ++l) {
     const FatPressureModel::Layer& layer = model_->layers[l];
     pressures_[l] = pressure(layer, step, around, duration_s, position, velocity);

@@ -11,7 +11,7 @@
 
 namespace fascia {
 
-// Fat that keeps its volume (spec L24). The fat over one solid is a layer with the volume change
+// Fat that keeps its volume. The fat over one solid is a layer with the volume change
 //
 //   ΔV = Σ N·(r − a) − the same at rest,   N = a third of the area vectors of the triangles around,
 //

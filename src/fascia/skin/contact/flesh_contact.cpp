@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
@@ -114,6 +115,9 @@ FleshContact::FleshContact(std::vector<PointBlock> blocks)
 FleshContact::Result FleshContact::project(const Field& field, const PointModel& points,
                                            float reach_m, float restitution, VectorArray& position,
                                            VectorArray& velocity, PointSurroundings& around) {
+  FASCIA_ASSERT(velocity.size() == position.size() && points.fat.size() == position.size(),
+                "a number for each point");
+  FASCIA_ASSERT(reach_m >= 0, "a search reaches somewhere");
   readBoxes(field, boxes_);
   followSolids(field);
   last_.resize(position.size());

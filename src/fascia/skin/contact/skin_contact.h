@@ -13,11 +13,11 @@ namespace fascia {
 
 class Skin;
 
-// Non-penetration of skin and flesh (spec L10, L11): every point keeps the distance of its fat τ
-// from every solid. The paper tests the point moved inward along the skin's normal,
-// g(r − τ n) ≥ 0; as a distance changes at most as fast as its point moves, d(r) ≥ τ implies that
-// for every n, also where the skin folds and its normal is doubtful. Knows nothing of how points
-// are connected.
+// Non-penetration of skin and flesh (Turner & Gobbetti 1998, §4.1.4 and §4.2.3): every point keeps
+// the distance of its fat τ from every solid. The paper tests the point moved inward along the
+// skin's normal, g(r − τ n) ≥ 0; as a distance changes at most as fast as its point moves, d(r) ≥ τ
+// implies that for every n, also where the skin folds and its normal is doubtful. Knows nothing of
+// how points are connected.
 class SkinContact {
  public:
   virtual ~SkinContact() = default;

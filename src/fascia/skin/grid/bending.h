@@ -9,7 +9,7 @@
 
 namespace fascia {
 
-// The optional bending term of Terzopoulos et al. 1987 (spec L4): per interior point
+// The optional bending term of Terzopoulos et al. 1987: per interior point
 //
 //   ε = Σ ξ_ab (B_ab − B0_ab)²,   B_ab = n · ∂²r/∂a∂b,   ab = 11, 22, 12 (12 twice),
 //

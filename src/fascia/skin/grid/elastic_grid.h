@@ -17,7 +17,7 @@ struct GridMaterial {
   float max_stretch = 1.4f;                // stress plateau, see ElasticGrid
 };
 
-// The elastic membrane of Terzopoulos et al. 1987 on a regular grid (spec L4), discretised so that
+// The elastic membrane of Terzopoulos et al. 1987 on a regular grid, discretised so that
 // the force is exactly −∂ε/∂r of a discrete energy:
 //
 //   ε = Σ_edges  w/4 · (|e|² − G)²            G11 on edges along u, G22 on edges along v

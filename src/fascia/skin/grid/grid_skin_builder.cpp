@@ -12,7 +12,7 @@
 namespace fascia {
 namespace {
 
-constexpr int kMinSide = 8, kMaxSide = 4096;
+constexpr int kMinSide = static_cast<int>(kGridSide.range.min);
 // Share of the skin's mass that the automatic step may add to points whose cells are much smaller
 // than the rest (the rings at the ends): below this no one sees a difference.
 constexpr double kAddedMassShare = 0.02;
@@ -61,27 +61,17 @@ void GridSkinBuilder::build() {
 }
 
 bool GridSkinBuilder::checkGrid() const {
-  bool ok = true;
-  for (const auto& [side, where] : {std::pair{def_.columns, "/grid/0"}, {def_.rows, "/grid/1"}}) {
-    if (side >= kMinSide && side <= kMaxSide) continue;
-    report_.error(where,
-                  "found " + std::to_string(side) + ", expected a whole number from " +
-                      std::to_string(kMinSide) + " to " + std::to_string(kMaxSide),
-                  "columns around the body, rows along it");
-    ok = false;
-  }
-  return ok;
+  const bool columns = report_.checkSide("/grid/0", def_.columns);
+  const bool rows = report_.checkSide("/grid/1", def_.rows);
+  return columns && rows;
 }
 
 // A saved skin brings all or nothing of its rest shape, and lists of the right length.
 bool GridSkinBuilder::checkPoints() const {
   if (!def_.points) return true;
   const SkinPointsDef& p = *def_.points;
-  if (p.columns < kMinSide || p.columns > kMaxSide || p.rows < kMinSide || p.rows > kMaxSide) {
-    report_.error("/points/grid", "found a grid of " + std::to_string(p.columns) + " x " +
-                                      std::to_string(p.rows) + ", expected sides from 8 to 4096");
-    return false;
-  }
+  const bool columns = report_.checkSide("/points/columns", p.columns);
+  if (!report_.checkSide("/points/rows", p.rows) || !columns) return false;
   const std::size_t count = static_cast<std::size_t>(p.columns) * static_cast<std::size_t>(p.rows);
   bool ok = report_.checkPointLists(p, count, "columns x rows");
   const auto check = [&](std::size_t size, const char* name) {

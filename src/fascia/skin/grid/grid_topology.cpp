@@ -1,5 +1,6 @@
 #include <fascia/skin/grid/grid_topology.h>
 
+#include <fascia/base/assert.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/leapfrog.h>
 
@@ -20,9 +21,9 @@ class GridSurfaceStepper final : public SurfaceStepper {
 
   void run(const StepInputs& inputs, int steps, VectorArray& position,
            VectorArray& velocity) override {
+    FASCIA_ASSERT(!inputs.extraForce, "only meshes have fat that presses");
     SweepModel model{&grid_.layout(), &grid_.elastic().coefficients(), inputs};
     if (!grid_.bending().active()) {
-      model.inputs.extraForce = nullptr;
       stepper_.run(model, 0, steps, position, velocity);
       return;
     }

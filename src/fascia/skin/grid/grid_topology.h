@@ -7,7 +7,7 @@
 
 namespace fascia {
 
-// A skin on an M x N grid: Terzopoulos' membrane and bending (spec L4).
+// A skin on an M x N grid: Terzopoulos' membrane and bending (1987).
 class GridTopology final : public SkinTopology {
  public:
   GridTopology(const GridLayout& layout, ElasticGrid elastic, Bending bending);

@@ -5,12 +5,14 @@
 #include <cstring>
 #include <utility>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 
 namespace fascia {
 namespace {
 
 double neededMass(const PointModel& p, std::size_t k, double h) {
+  FASCIA_ASSERT(k < p.stiffnessBound.size(), "every point's stiffness is bounded");
   return 0.25 * kStabilityMargin * h * h * p.stiffnessBound[k];
 }
 
@@ -23,6 +25,8 @@ constexpr int kStepsPerVisit = 4;
 
 void copyRows(const GridLayout& g, const VectorArray& from, int fromFirst, VectorArray& to,
               int toFirst, int begin, int end) {
+  FASCIA_ASSERT(fromFirst <= begin && toFirst <= begin && begin <= end && end <= g.rows,
+                "rows of the grid");
   const std::size_t count = static_cast<std::size_t>(end - begin) * g.stride();
   const std::size_t source = static_cast<std::size_t>(begin - fromFirst) * g.stride();
   const std::size_t target = static_cast<std::size_t>(begin - toFirst) * g.stride();
@@ -42,6 +46,9 @@ SweepBand bandOf(VectorArray& position, VectorArray& velocity, int firstStored) 
 void prepareStep(const PointModel& p, const ContactResponse& contact, double h,
                  StepCoefficients& out) {
   const std::size_t n = p.mass.size();
+  FASCIA_ASSERT(h > 0, "time goes on");
+  FASCIA_ASSERT(p.stiffnessBound.size() == n && p.free.size() == n && p.drag.size() == n,
+                "a number for each point");
   for (FloatArray* a : {&out.gain, &out.keep, &out.weight, &out.strandGain, &out.carried})
     a->resize(n);
   out.step_s = static_cast<float>(h);
@@ -50,6 +57,7 @@ void prepareStep(const PointModel& p, const ContactResponse& contact, double h,
   for (std::size_t k = 0; k < n; ++k) {
     const bool isFree = p.free[k] > 0;
     const double mass = std::max<double>(p.mass[k], neededMass(p, k, h));
+    FASCIA_ASSERT(!isFree || mass > 0, "free points have mass");
     const double z = isFree ? 0.5 * h * p.drag[k] / mass : 0;
     out.gain[k] = isFree ? static_cast<float>(h / (mass * (1 + z))) : 0.f;
     out.keep[k] = isFree ? static_cast<float>(std::max(0.0, (1 - z) / (1 + z))) : 1.f;
@@ -102,6 +110,9 @@ GridStepper::GridStepper(const GridLayout& layout) : layout_(layout) {
 void GridStepper::run(const SweepModel& model, int firstStep, int steps, VectorArray& position,
                       VectorArray& velocity) {
   const float h = model.inputs.step->step_s;
+  FASCIA_ASSERT(
+      h > 0 && position.size() == layout_.storage() && velocity.size() == layout_.storage(),
+      "the state is of this grid");
   if (tiles_.size() == 1) {
     const SweepBand band = bandOf(position, velocity, 0);
     for (int s = 1; s <= steps; ++s)

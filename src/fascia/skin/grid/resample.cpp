@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/skin/grid/elastic_grid.h>
 
 namespace fascia {
@@ -26,9 +27,11 @@ Between locate(int i, int count, int samples, bool periodic) {
 }  // namespace
 
 FloatArray resample(const GridLayout& from, const FloatArray& values, const GridLayout& to) {
+  FASCIA_ASSERT(values.size() == from.storage(), "the values are of this grid");
   FloatArray out(to.storage(), 0.f);
   for (int j = 0; j < to.rows; ++j) {
     const Between v = locate(j, to.rows, from.rows, false);
+    FASCIA_ASSERT(v.low >= 0 && v.high < from.rows, "between rows of the grid");
     for (int i = 0; i < to.columns; ++i) {
       const Between u = locate(i, to.columns, from.columns, from.closed);
       const auto row = [&](int r) {

@@ -9,7 +9,7 @@
 
 namespace fascia {
 
-// A skin on a triangle mesh (spec L21). Points are numbered by storage.
+// A skin on a triangle mesh. Points are numbered by storage.
 class MeshTopology final : public SkinTopology {
  public:
   // What is drawn: its vertices are points of the skin, several of them for one point at a seam.

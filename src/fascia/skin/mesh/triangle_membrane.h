@@ -23,8 +23,8 @@ struct TriangleMaterial {
   float max_stretch = 1.4f;                // stress plateau, as ElasticGrid's
 };
 
-// The elastic membrane of spec L4 on a triangle mesh: orthotropic St. Venant–Kirchhoff with the
-// rest shape as metric. x_u and x_v, the images of the material's unit vectors u and v ⟂ u, are
+// The elastic membrane of elastic_grid.h on a triangle mesh: orthotropic St. Venant–Kirchhoff with
+// the rest shape as metric. x_u and x_v, the images of the material's unit vectors u and v ⟂ u, are
 // linear in a triangle's corners, and with E = ½(G − G0), G their dot products,
 //
 //   ε = Σ_triangles A · ½ [K_u E_uu² + K_v E_vv² + S (2 E_uv)²],   isotropic where K_u = K_v = 2 S.

@@ -31,8 +31,8 @@ struct PointStep {
     V3 position = r.at(local), velocity = v.at(local);
     if (m.extraForce) force = force + pointers(*m.extraForce).at(k);
 
-    // Tissue, spec L5: pulls only beyond its rest length, along the strand. Strands without one
-    // hold a point from all sides, and damp it so.
+    // Tissue (Turner & Gobbetti 1998, eq. 3): pulls only beyond its rest length, along the strand.
+    // Strands without one hold a point from all sides, and damp it so.
     const V3 anchorVelocity = pointers(around.anchorVelocity).at(k);
     const V3 strand = position - mulAdd(before, anchorVelocity, pointers(around.anchor).at(k));
     const V squared = hn::Add(dot(strand, strand), hn::Set(d, 1e-16f));
@@ -54,7 +54,8 @@ struct PointStep {
     velocity = mulAdd(hn::Neg(damped), closing, velocity);
     position = mulAdd(hn::Set(d, s.step_s), velocity, position);
 
-    // Flesh as a moving half space, spec L10; velocities are relative to the flesh.
+    // Flesh as a moving half space (Turner & Gobbetti 1998, eq. 13); velocities are relative to the
+    // flesh.
     const V3 normal = pointers(around.normal).at(k);
     const V3 flesh = pointers(around.fleshVelocity).at(k);
     const V offset = hn::MulAdd(time, dot(normal, flesh), load(around.offset));

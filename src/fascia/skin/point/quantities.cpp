@@ -4,22 +4,28 @@ namespace fascia {
 namespace {
 
 using Q = SkinQuantity;
+using Material = SkinMaterialDef;
+using Tissue = SkinTissueDef;
+using Pose = SkinPoseDef;
 constexpr QuantityInfo kInfos[kSkinQuantities] = {
-    {Q::density, "density", "kg/m²", 0.01, 1000},
-    {Q::stretch_u, "stretch_u", "N/m", 1e-3, 1e6},
-    {Q::stretch_v, "stretch_v", "N/m", 1e-3, 1e6},
-    {Q::shear, "shear", "N/m", 0, 1e6},
-    {Q::bending, "bending", "N m", 0, 1e3},
-    {Q::drag, "drag", "N s/m³", 0, 1e5},
-    {Q::prestretch, "prestretch", "", 0.5, 3},
-    {Q::fat, "fat", "m", 0, 1},
-    {Q::tissue_stiffness, "tissue_stiffness", "N/m³", 0, 1e8},
-    {Q::tissue_damping, "tissue_damping", "N s/m³", 0, 1e6},
-    {Q::tissue_rest_length, "tissue_rest_length", "m", 0, 1},
-    {Q::jiggle, "jiggle", "", 0, 1},
-    {Q::muscle, "muscle", "", 0, 1},
-    {Q::volume, "volume", "", 0, 1},
-    {Q::tightness, "tightness", "", 0, 1},
+    {Q::density, "density", "density_kg_per_m2", tunableOf(&Material::density_kg_per_m2)},
+    {Q::stretch_u, "stretch_u", "stretch_u_N_per_m", tunableOf(&Material::stretch_u_N_per_m)},
+    {Q::stretch_v, "stretch_v", "stretch_v_N_per_m", tunableOf(&Material::stretch_v_N_per_m)},
+    {Q::shear, "shear", "shear_N_per_m", tunableOf(&Material::shear_N_per_m)},
+    {Q::bending, "bending", "bending_Nm", tunableOf(&Material::bending_Nm)},
+    {Q::drag, "drag", "drag_Ns_per_m3", tunableOf(&Material::drag_Ns_per_m3)},
+    {Q::prestretch, "prestretch", "prestretch", tunableOf(&Material::prestretch)},
+    {Q::fat, "fat", "fat_m", tunableOf(&SkinFatDef::thickness_m)},
+    {Q::tissue_stiffness, "tissue_stiffness", "tissue_stiffness_N_per_m3",
+     tunableOf(&Tissue::stiffness_N_per_m3)},
+    {Q::tissue_damping, "tissue_damping", "tissue_damping_Ns_per_m3",
+     tunableOf(&Tissue::damping_Ns_per_m3)},
+    {Q::tissue_rest_length, "tissue_rest_length", "tissue_rest_length_m",
+     tunableOf(&Tissue::rest_length_m)},
+    {Q::jiggle, "jiggle", "jiggle", tunableOf(&Pose::jiggle)},
+    {Q::muscle, "muscle", "muscle", tunableOf(&Pose::muscle)},
+    {Q::volume, "volume", "volume", tunableOf(&Pose::volume)},
+    {Q::tightness, "tightness", "tightness", tunableOf(&Pose::tightness)},
 };
 
 }  // namespace
@@ -30,12 +36,6 @@ std::span<const QuantityInfo> quantityInfos() {
 
 const QuantityInfo& info(SkinQuantity quantity) {
   return kInfos[static_cast<std::size_t>(quantity)];
-}
-
-const QuantityInfo* findQuantity(std::string_view name) {
-  for (const QuantityInfo& i : kInfos)
-    if (i.name == name) return &i;
-  return nullptr;
 }
 
 double uniformValue(const SkinDef& def, SkinQuantity quantity) {

@@ -13,13 +13,12 @@ inline constexpr std::size_t kSkinQuantities = 15;
 
 struct QuantityInfo {
   SkinQuantity quantity;
-  std::string_view name;  // as in files
-  std::string_view unit;
-  double min, max;
+  std::string_view name;     // as in files
+  std::string_view listKey;  // of a list of values per point, as in files
+  TunableInfo uniform;       // the tunable that all points have without edits: unit and range
 };
 std::span<const QuantityInfo> quantityInfos();
 const QuantityInfo& info(SkinQuantity quantity);
-const QuantityInfo* findQuantity(std::string_view name);  // nullptr if there is none
 
 // All tunable per-point quantities in storage order: what edits, brushes, files and changes of
 // resolution work on alike.

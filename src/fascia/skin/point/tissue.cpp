@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include <fascia/base/assert.h>
+
 namespace fascia {
 
 TissueAnchors::TissueAnchors(std::vector<Anchor> anchors)
@@ -21,12 +23,14 @@ TissueAnchors::TissueAnchors(std::vector<Anchor> anchors)
 }
 
 void TissueAnchors::place(const Field& field, VectorArray& scratch, VectorArray& anchor) const {
+  FASCIA_ASSERT(anchors_.size() == material_.size(), "every anchor has its matter");
   scratch.resize(anchors_.size());
   for (const Group& g : groups_)
     field.worldFromMaterials(g.solid, view(material_, g.first, g.count),
                              view(scratch, g.first, g.count));
   for (std::size_t i = 0; i < anchors_.size(); ++i) {
     const std::size_t k = anchors_[i].point;
+    FASCIA_ASSERT(k < anchor.size(), "an anchor holds a point of the skin");
     anchor.x[k] = scratch.x[i];
     anchor.y[k] = scratch.y[i];
     anchor.z[k] = scratch.z[i];

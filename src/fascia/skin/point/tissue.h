@@ -8,8 +8,8 @@
 
 namespace fascia {
 
-// The inner ends of the tissue strands (spec L5): material points of solids, so that they stay on
-// a solid's surface while it moves and swells. Constant once built.
+// The inner ends of the tissue strands (Turner & Gobbetti 1998, §4.1.2): material points of
+// solids, so that they stay on a solid's surface while it moves and swells. Constant once built.
 class TissueAnchors {
  public:
   struct Anchor {

@@ -26,7 +26,7 @@ struct Lists {
   void endList() { first.push_back(static_cast<std::uint32_t>(items.size())); }
 };
 
-// What of a skin may touch what, prepared once from the rest shape (spec L22). Constant.
+// What of a skin may touch what, prepared once from the rest shape. Constant.
 struct SelfContactModel {
   // Kernels work on this many at once, or on parts of it.
   static constexpr std::size_t kLanes = 16;
