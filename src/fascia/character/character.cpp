@@ -3,54 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/character/character_builder.h>
+#include <fascia/character/editing.h>
 #include <fascia/field/field_list.h>
 #include <fascia/flesh/bind.h>
-#include <fascia/math/ode/integrators.h>
 
 namespace fascia {
 namespace {
 
-// The longest piece of a frame that is simulated at once.
-constexpr double kLongestFrame_s = 1.0 / 12;
-
-void checkSimulation(const SimulationDef& s, Diagnostics& diagnostics) {
-  const auto range = [&](const char* key, double value, double low, double high) {
-    if (value >= low && value <= high) return;  // false for NaN
-    diagnostics.error(std::string("/simulation/") + key,
-                      "found " + std::to_string(value) + ", expected a number from " +
-                          std::to_string(low) + " to " + std::to_string(high));
-  };
-  range("frame_rate_hz", s.frame_rate_hz, 1, 1000);
-  range("step_s", s.step_s, 0, kLongestFrame_s);
-  range("min_step_s", s.min_step_s, 1e-9, kLongestFrame_s);
-  range("max_step_s", s.max_step_s, 1e-9, kLongestFrame_s);
-  range("position_tolerance_m", s.position_tolerance_m, 1e-12, 1e3);
-  range("velocity_tolerance", s.velocity_tolerance, 1e-12, 1e3);
-  range("correction_tolerance_m", s.correction_tolerance_m, 1e-9, 1e3);
-  range("settle_s", s.settle_s, 0, 60);
-  for (int a = 0; a < 3; ++a)
-    range(("gravity_m_per_s2/" + std::to_string(a)).c_str(), s.gravity_m_per_s2[a], -1e4, 1e4);
-  if (s.integrator == "auto" || s.integrator == "leapfrog") return;
-  std::string names = "auto, leapfrog";
-  for (const IntegratorInfo& i : integrators()) {
-    if (i.name == s.integrator) return;
-    names += ", " + std::string(i.name);
-  }
-  diagnostics.error("/simulation/integrator",
-                    "found '" + s.integrator + "', expected one of " + names);
-}
-
-SkinSettings settingsOf(const SimulationDef& s, const BuildOptions& options) {
-  SkinSettings out;
-  out.gravity_m_per_s2 = s.gravity_m_per_s2;
-  out.integrator = s.integrator;
-  out.step_s = s.step_s;
-  out.min_step_s = s.min_step_s;
-  out.max_step_s = s.max_step_s;
-  out.position_tolerance_m = s.position_tolerance_m;
-  out.velocity_tolerance = s.velocity_tolerance;
-  out.correction_tolerance_m = s.correction_tolerance_m;
-  if (options.interval_s > 0) out.interval_s = options.interval_s;
+std::shared_ptr<const CharacterDef> withOptions(const CharacterDef& def,
+                                                const BuildOptions& options) {
+  auto out = std::make_shared<CharacterDef>(def);
+  if (!options.integrator.empty()) out->simulation.integrator = options.integrator;
+  if (options.step_s >= 0) out->simulation.step_s = options.step_s;
+  if (out->skin && options.columns > 0) out->skin->columns = options.columns;
+  if (out->skin && options.rows > 0) out->skin->rows = options.rows;
+  if (out->skin && options.jiggle >= 0) out->skin->pose.jiggle = options.jiggle;
   return out;
 }
 
@@ -91,8 +59,7 @@ class MotionPoses final : public SkinPoseSource {
 
   SkinPose at(double time_s) override {
     poseJoints(time_s);
-    character_.flesh().pose(state_.posture, state_.skeleton, state_.parameters,
-                            state_.flesh.rigid());
+    character_.flesh().pose(state_.posture, state_.skeleton, parameters(), state_.flesh.rigid());
     if (character_.softFlesh()) showSoft(time_s);
     if (!surroundings_) return {&state_.flesh, state_.skeleton.joint_world};
     all_.clear();
@@ -102,6 +69,16 @@ class MotionPoses final : public SkinPoseSource {
   }
 
  private:
+  // Those of the motion, then those held from outside: the last one of a parameter counts.
+  std::span<const Flesh::ParameterOverride> parameters() {
+    if (state_.held.empty()) return state_.parameters;
+    state_.allParameters.assign(state_.parameters.begin(), state_.parameters.end());
+    state_.allParameters.insert(state_.allParameters.end(), state_.held.begin(), state_.held.end());
+    if (!moving_)
+      for (Flesh::ParameterOverride& p : state_.allParameters) p.rate = 0;
+    return state_.allParameters;
+  }
+
   void showSoft(double time_s) {
     character_.softFlesh()->prepare(state_.flesh);
     if (stepper_) {
@@ -154,90 +131,18 @@ class FrozenPoses final : public SkinPoseSource {
 
 }  // namespace
 
-Character::Character(const CharacterDef& def, const BuildOptions& options) : def_(def) {
-  if (!options.integrator.empty()) def_.simulation.integrator = options.integrator;
-  if (options.step_s >= 0) def_.simulation.step_s = options.step_s;
-  if (def_.skin && options.columns > 0) def_.skin->columns = options.columns;
-  if (def_.skin && options.rows > 0) def_.skin->rows = options.rows;
-  if (def_.skin && options.jiggle >= 0) def_.skin->pose.jiggle = options.jiggle;
+Character::Character(const CharacterDef& def, const BuildOptions& options)
+    : parts_(CharacterBuilder(withOptions(def, options), options.interval_s, nullptr).build()) {}
 
-  Diagnostics diagnostics;
-  skeleton_ = Skeleton(def_.skeleton, "/skeleton", diagnostics);
-  // Joints are referred to by name everywhere below: without them more messages would mislead.
-  diagnostics.throwIfErrors();
-  flesh_ = Flesh(def_.flesh, skeleton_, "/solids", diagnostics);
-  ornaments_ = Flesh(def_.ornaments, skeleton_, "/ornaments", diagnostics, Flesh::Role::ornament);
-  const bool hasFlesh = diagnostics.ok();
-  if (hasFlesh) buildSoftFlesh(diagnostics);
-  checkSimulation(def_.simulation, diagnostics);
-  for (std::size_t i = 0; i < def_.motions.size(); ++i) {
-    const std::string pointer = "/motions/" + std::to_string(i);
-    clips_.push_back(
-        bindMotion(def_.motions[i], skeleton_, flesh_, ornaments_, pointer, diagnostics));
-    for (std::size_t j = 0; j < i; ++j)
-      if (def_.motions[j].name == def_.motions[i].name)
-        diagnostics.error(pointer + "/name", "found '" + def_.motions[i].name + "' a second time",
-                          "give every motion a name of its own");
-  }
-  if (def_.rig && def_.rig->model) bindRigMotions(diagnostics);
-  if (def_.skin && hasFlesh) {
-    PosedSkeleton posedSkeleton;
-    PosedFlesh posedFlesh;
-    const Posture rest = skeleton_.restPosture();
-    skeleton_.pose(rest, posedSkeleton);
-    flesh_.pose(rest, posedSkeleton, {}, posedFlesh);
-    skin_ = std::make_unique<Skin>(*def_.skin, settingsOf(def_.simulation, options),
-                                   SkinBase{skeleton_, flesh_, posedSkeleton, posedFlesh,
-                                            def_.rig ? def_.rig->model.get() : nullptr},
-                                   "/skin", diagnostics);
-  }
-  diagnostics.throwIfErrors();
-}
-
-void Character::buildSoftFlesh(Diagnostics& diagnostics) {
-  const auto isSoft = [](const FleshSolidDef& solid) { return solid.soft.has_value(); };
-  const std::vector<FleshSolidDef>&solids = def_.flesh.solids, &ornaments = def_.ornaments.solids;
-  for (std::size_t i = 0; i < ornaments.size(); ++i)
-    if (isSoft(ornaments[i]))
-      diagnostics.error("/ornaments/" + std::to_string(i) + "/soft",
-                        "an ornament is rigid: it cannot be soft", "make it one of the solids");
-  for (std::size_t m = 0; m < def_.motions.size(); ++m) {
-    const std::vector<TrackDef>& tracks = def_.motions[m].tracks;
-    for (std::size_t t = 0; t < tracks.size(); ++t) {
-      const auto solid = std::ranges::find(solids, tracks[t].name, &FleshSolidDef::name);
-      if (tracks[t].target != TrackDef::Target::solid || solid == solids.end() || !isSoft(*solid))
-        continue;
-      diagnostics.error(
-          "/motions/" + std::to_string(m) + "/tracks/" + std::to_string(t),
-          "the soft solid '" + solid->name + "' takes its shape from forces: it has no keys",
-          "drop its \"soft\", or the track");
-    }
-  }
-  if (std::ranges::none_of(solids, isSoft)) return;
-  softFlesh_ = std::make_shared<SoftFlesh>(def_.flesh, flesh_, "/solids", diagnostics);
-}
-
-// The rig's motions come after the character's own; one that has the name of an own one is hidden.
-void Character::bindRigMotions(Diagnostics& diagnostics) {
-  const std::shared_ptr<const RiggedModel>& model = def_.rig->model;
-  std::vector<SampledFrame> frames;
-  for (const RigJoint& j : model->joints)
-    frames.push_back({j.name,
-                      j.parent < 0 ? "" : model->joints[static_cast<std::size_t>(j.parent)].name,
-                      j.rest_world});
-  for (const SampledMotion& motion : model->motions) {
-    if (findMotion(motion.name) >= 0) continue;
-    // Shares the ownership of the whole model.
-    clips_.push_back(bindSampled(std::shared_ptr<const SampledMotion>(model, &motion), frames,
-                                 skeleton_, "/rig", diagnostics));
-    if (!diagnostics.ok()) return;
-  }
+Character Character::edited(const CharacterDef& def) const {
+  return Character(
+      CharacterBuilder(std::make_shared<CharacterDef>(def), parts_.interval_s, &parts_).build());
 }
 
 int Character::findMotion(std::string_view name) const {
-  if (name.empty()) return clips_.empty() ? -1 : 0;
-  for (std::size_t i = 0; i < clips_.size(); ++i)
-    if (clips_[i].name == name) return static_cast<int>(i);
+  if (name.empty()) return motionCount() == 0 ? -1 : 0;
+  for (std::size_t i = 0; i < motionCount(); ++i)
+    if (motion(i).name == name) return static_cast<int>(i);
   return -1;
 }
 
@@ -247,6 +152,12 @@ std::uint64_t hashOf(const Character& character, const CharacterState& state) {
   hash.add(state.posture.values.data(), state.posture.values.size() * sizeof(double));
   hash.add(state.bodies.r.data(), state.bodies.r.size() * sizeof(double));
   hash.add(state.bodies.v.data(), state.bodies.v.size() * sizeof(double));
+  for (const Flesh::ParameterOverride& p : state.held) {
+    hash.add(p.solid.value);
+    hash.add(p.parameter);
+    hash.add(p.value);
+    hash.add(p.rate);
+  }
   if (character.skin()) state.skin.addTo(hash, character.skin()->topology());
   return hash.value();
 }
@@ -277,7 +188,7 @@ CharacterState initialState(const Character& character, int motion) {
   if (character.softFlesh()) settleBodies(character, motion, state);
   if (character.skin()) {
     const SkinPose pose{&state.flesh, state.skeleton.joint_world};
-    carrySkin(*character.skin(), pose, state.skin);
+    placeSkin(*character.skin(), pose, state.skin);
     FrozenPoses frozen(pose);
     SkinStats ignored;
     const double frame = 1.0 / 60;
@@ -295,10 +206,11 @@ CharacterState initialState(const Character& character, int motion) {
 
 void advance(const Character& character, int motion, double dt_s, CharacterState& state,
              SkinStats& stats, Surroundings* surroundings) {
+  requireFits(character, state);
   const double start = state.time_s;
   state.time_s = start + dt_s;
   MotionPoses poses(character, motion, true, state, surroundings);
-  const int pieces = std::max(1, static_cast<int>(std::ceil(dt_s / kLongestFrame_s - 1e-6)));
+  const int pieces = std::max(1, static_cast<int>(std::ceil(dt_s / kLongestPiece_s - 1e-6)));
   for (int i = 0; i < pieces; ++i) {
     const double from = start + dt_s * i / pieces;
     const double to = i + 1 == pieces ? state.time_s : start + dt_s * (i + 1) / pieces;

@@ -9,7 +9,7 @@
 #include <fascia/motion/motion.h>
 #include <fascia/rig/rigged_model.h>
 #include <fascia/skeleton/skeleton.h>
-#include <fascia/skin/skin_def.h>
+#include <fascia/skin/def/skin_def.h>
 
 namespace fascia {
 
@@ -25,6 +25,7 @@ struct SimulationDef {
   double correction_tolerance_m = 0.01;  // ε_c: a larger non-penetration correction redoes the step
   Vec3 gravity_m_per_s2{0, -9.81, 0};
   double settle_s = 0.5;  // [0, 60]; simulated before time 0 in the first posture
+  bool operator==(const SimulationDef&) const = default;
 };
 
 // An imported, skinned mesh that is the character's skin instead of a grid. Its joints are found by
@@ -33,6 +34,7 @@ struct RigDef {
   std::string file;                          // glTF beside the character file
   double scale = 1;                          // (0, 1e6] of all its lengths
   std::shared_ptr<const RiggedModel> model;  // read from the file; not saved
+  bool operator==(const RigDef&) const = default;
 };
 
 // What a *.fascia.json holds and a person edits. Plain values; y is up, metres.
@@ -47,6 +49,7 @@ struct CharacterDef {
   std::vector<MotionDef> motions;
   SimulationDef simulation;
   std::string folder;  // where the file lies; relative paths (textures) start here. Not saved.
+  bool operator==(const CharacterDef&) const = default;
 };
 
 }  // namespace fascia

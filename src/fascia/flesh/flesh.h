@@ -20,16 +20,19 @@ struct DriverDef {
   struct Point {
     double jointValue;  // metre or radian
     double parameter;   // the parameter's own unit
+    bool operator==(const Point&) const = default;
   };
   std::string parameter;  // path, e.g. "radius_m", "taper.amount"
   std::string joint;
   Dof dof = Dof::rx;
   std::vector<Point> points;  // increasing jointValue, two to 1024; constant outside
   Interpolation interpolation = Interpolation::smooth;
+  bool operator==(const DriverDef&) const = default;
 };
 
 struct Color {
   float r = 0.8f, g = 0.8f, b = 0.8f;  // linear is not meant: sRGB, each in [0, 1]
+  bool operator==(const Color&) const = default;
 };
 
 // A solid that is a linear deformable body instead of a rigid one: it sags, lags and jiggles
@@ -40,6 +43,7 @@ struct SoftSolidDef : BodyMaterialDef {
   // In the solid's frame, within its bounds, at most 64; none: some at the end that is nearest to
   // the joint.
   std::vector<Vec3> held_m;
+  bool operator==(const SoftSolidDef&) const = default;
 };
 
 // A solid on a joint. Flesh solids shape the skin; ornaments (eyes, beak, claws) are only seen.
@@ -52,10 +56,12 @@ struct FleshSolidDef {
   std::vector<DriverDef> drivers;
   Color color{0.72f, 0.28f, 0.26f};
   std::optional<SoftSolidDef> soft;  // not of ornaments, and not with drivers
+  bool operator==(const FleshSolidDef&) const = default;
 };
 
 struct FleshDef {
   std::vector<FleshSolidDef> solids;
+  bool operator==(const FleshDef&) const = default;
 };
 
 class Flesh;

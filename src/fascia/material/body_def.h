@@ -33,11 +33,15 @@ struct BodyMaterial {
   double power_damping_s_per_J = 0;  // k_d, [0, 1e6]
   // Force against the motion in proportion to the mass.
   double drag_per_s = 0;  // [0, 1e6]
+
+  bool operator==(const BodyMaterial&) const = default;
 };
 
 // What a body is made of, as files say it.
 struct BodyMaterialDef : BodyMaterial {
   double density_kg_per_m3 = 1000;  // (0, 1e6]; kg/m² in two dimensions
+
+  bool operator==(const BodyMaterialDef&) const = default;
 };
 
 // Report what is out of its range, with JSON pointers below `pointer`.

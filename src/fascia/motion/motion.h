@@ -14,6 +14,7 @@ struct Key {
   double time_s = 0;
   double value = 0;  // metre or radian; a solid's parameter: its own unit
   double tension = 0, continuity = 0, bias = 0;
+  bool operator==(const Key&) const = default;
 };
 
 // One animated number: a joint's degree of freedom or a solid's parameter.
@@ -23,6 +24,7 @@ struct TrackDef {
   std::string name;       // of the joint or solid
   std::string channel;    // "tx"…"rz", or the parameter's name, e.g. "radius_m"
   std::vector<Key> keys;  // times increase; at least one
+  bool operator==(const TrackDef&) const = default;
 };
 
 struct MotionDef {
@@ -30,6 +32,7 @@ struct MotionDef {
   double duration_s = 0;         // [0, 1e6]; 0 = the last key's time
   bool loop = false;             // repeats every duration; tangents wrap. See KeySpline.
   std::vector<TrackDef> tracks;  // at most kMostTracks
+  bool operator==(const MotionDef&) const = default;
 };
 
 // The duration that a motion plays for: its own, or the last key's time.

@@ -23,6 +23,7 @@ struct DofDef {
   Dof dof = Dof::rx;
   double min = -1e9, max = 1e9;  // metre or radian, [-1e9, 1e9]
   double rest = 0;               // value in the rest posture, within [min, max] and [-1e6, 1e6]
+  bool operator==(const DofDef&) const = default;
 };
 
 // A joint's frame in its parent's: translate by offset, turn by orientation, then by its own
@@ -33,10 +34,12 @@ struct JointDef {
   Vec3 offset_m = Vec3::Zero();         // each within [-1e6, 1e6]
   Vec3 orientation_rad = Vec3::Zero();  // intrinsic Rz·Ry·Rx
   std::vector<DofDef> dofs;             // any subset of the six
+  bool operator==(const JointDef&) const = default;
 };
 
 struct SkeletonDef {
   std::vector<JointDef> joints;
+  bool operator==(const SkeletonDef&) const = default;
 };
 
 // The values of every degree of freedom, and their rates: one entry per Skeleton value.

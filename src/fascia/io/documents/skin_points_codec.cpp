@@ -110,7 +110,8 @@ std::string parseRow(const std::string& text, std::size_t count, const NumberRan
 
 template <class T>
 void readRows(const Json& json, const JsonPath& path, Reading& reading, const NumberRange& range,
-              const SkinPointsDef& grid, std::vector<T>& out) {
+              const SkinPointsDef& grid, SharedList<T>& list) {
+  std::vector<T>& out = list.edit();
   const auto columns = static_cast<std::size_t>(grid.columns);
   const auto rows = static_cast<std::size_t>(grid.rows);
   if constexpr (std::is_same_v<T, float>) {
@@ -158,7 +159,7 @@ Json rowsJson(const std::vector<T>& values, const SkinPointsDef& grid, const std
 
 struct FloatList {
   const char* name;
-  std::vector<float> SkinPointsDef::*member;
+  SharedList<float> SkinPointsDef::*member;
   NumberRange range;
 };
 const FloatList kFloatLists[] = {
@@ -177,7 +178,7 @@ const FloatList kFloatLists[] = {
 
 struct TripleList {
   const char* name;
-  std::vector<Triple> SkinPointsDef::*member;
+  SharedList<Triple> SkinPointsDef::*member;
 };
 const TripleList kTripleLists[] = {
     {"anchor", &SkinPointsDef::anchor},
@@ -207,7 +208,7 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
       if (!entries.empty()) out.set(list.name, rowsJson(entries, value, list.name));
     }
     if (!value.anchor_solid.empty()) {
-      out.set(kAnchorSolid, rowsJson(value.anchor_solid, value, kAnchorSolid));
+      out.set(kAnchorSolid, rowsJson(value.anchor_solid.values(), value, kAnchorSolid));
     }
     for (const TripleList& list : kTripleLists) {
       const std::vector<Triple>& entries = value.*list.member;

@@ -1,7 +1,7 @@
 #include <fascia/skin/grid/grid_topology.h>
 
 #include <fascia/skin/grid/grid_kernels.h>
-#include <fascia/skin/grid/leapfrog.h>
+#include <fascia/skin/grid/grid_stepper.h>
 
 namespace fascia {
 namespace {

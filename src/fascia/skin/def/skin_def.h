@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <fascia/base/shared_list.h>
 #include <fascia/math/types.h>
 
 namespace fascia {
@@ -23,6 +24,7 @@ struct SkinMaterialDef {
   double max_stretch = 1.4;        // [1.01, 4]; beyond it the stress no longer grows
   double friction_per_s = 8;       // [0, 1e4]; rate at which sliding on flesh dies away
   double restitution = 0;          // [0, 1]; the paper's k_n: bounce off the flesh
+  bool operator==(const SkinMaterialDef&) const = default;
 };
 
 struct SkinFatDef {
@@ -30,6 +32,7 @@ struct SkinFatDef {
                               // flesh counts
   double compressible = 0;    // [0, 0.95]; share of the thickness that pressing can take away
   double bulk_Pa = 0;         // [0, 1e5]; resistance of each solid's fat to a change of its volume
+  bool operator==(const SkinFatDef&) const = default;
 };
 
 struct SkinTissueDef {
@@ -38,6 +41,7 @@ struct SkinTissueDef {
   std::optional<double> rest_length_m;  // [0, 1]; none = the length at attachment
   double carry = 0;  // [0, 1]; share of its anchor's changes of velocity that a point takes over at
                      // once: 0 shakes like jelly, 1 not at all
+  bool operator==(const SkinTissueDef&) const = default;
 };
 
 // One end of the tube: a small ring of points fixed to a joint.
@@ -47,6 +51,7 @@ struct SkinEndDef {
                                    // surface on the ray from here along axis
   Vec3 axis = Vec3::Zero();        // in the joint's frame; zero = away from the other end
   double radius_m = 0;             // of the ring; 0 = 0.022 of the distance of the two ends
+  bool operator==(const SkinEndDef&) const = default;
 };
 
 // The named per-point quantities that region edits and brushes change.
@@ -77,6 +82,7 @@ struct SkinPoseDef {
   // Beyond the pose: elastic skin with the material and tissue below is simulated, its strands'
   // inner ends where the pose function has the mesh.
   bool simulate = false;
+  bool operator==(const SkinPoseDef&) const = default;
 };
 
 // A named part of the skin in material coordinates, and what differs there.
@@ -85,6 +91,7 @@ struct SkinRegionDef {
     SkinQuantity quantity;
     enum class Mode { set, scale, add } mode = Mode::set;
     double value = 0;  // the quantity's unit; scale: a factor
+    bool operator==(const Edit&) const = default;
   };
   std::string name;
   double u_min = 0, u_max = 1;  // around, in [0, 1]; u_min > u_max wraps around
@@ -93,6 +100,7 @@ struct SkinRegionDef {
   std::string joint;            // of an imported mesh, if given: instead, by the joint's weights
   double feather = 0.05;        // [0, 0.5]; width of the smooth border in u and v
   std::vector<Edit> edits;
+  bool operator==(const SkinRegionDef&) const = default;
 };
 
 // A Gaussian dab, as the paper's liposuction tool leaves it.
@@ -102,6 +110,7 @@ struct SkinBrushDef {
   std::string joint;
   double radius_m = 0.1;  // one standard deviation
   double amount = 0;      // added at the centre; the result never falls below 0
+  bool operator==(const SkinBrushDef&) const = default;
 };
 
 // One end point of a tissue strand, moved by hand.
@@ -109,6 +118,7 @@ struct SkinAnchorDef {
   double u = 0, v = 0;  // the skin point nearest to these material coordinates
   std::string solid;
   Vec3 position_m = Vec3::Zero();  // in the solid's frame, put onto its surface
+  bool operator==(const SkinAnchorDef&) const = default;
 };
 
 // Per-point values that replace the defaults above, row by row from the bottom end: what a studio
@@ -116,17 +126,19 @@ struct SkinAnchorDef {
 // Of an imported mesh: in the order of RiggedModel::points_m, without anchors and rest positions.
 struct SkinPointsDef {
   int columns = 0, rows = 0;
-  std::vector<float> density, stretch_u, stretch_v, shear, bending, drag, prestretch, fat,
+  SharedList<float> density, stretch_u, stretch_v, shear, bending, drag, prestretch, fat,
       tissue_stiffness, tissue_damping, tissue_rest_length, jiggle, muscle, volume, tightness;
-  std::vector<int> anchor_solid;                      // -1: no tissue
-  std::vector<std::array<float, 3>> anchor;           // material coordinates on that solid
-  std::vector<std::array<float, 3>> rest_position_m;  // world, rest posture
+  SharedList<int> anchor_solid;                      // -1: no tissue
+  SharedList<std::array<float, 3>> anchor;           // material coordinates on that solid
+  SharedList<std::array<float, 3>> rest_position_m;  // world, rest posture
+  bool operator==(const SkinPointsDef&) const = default;
 };
 
 // The skin against itself (spec L22).
 struct SkinContactDef {
   bool self = false;
   double gap_m = 0.002;  // (0, 1]; kept between two sheets of skin
+  bool operator==(const SkinContactDef&) const = default;
 };
 
 // What becomes of a piece of an imported mesh, named by its part or material.
@@ -135,6 +147,7 @@ struct SkinPartDef {
   // Carried by its joints as it is: armour, buckles, a robot. Pieces that a single joint carries
   // are, unless a rule with false makes them skin.
   bool rigid = true;
+  bool operator==(const SkinPartDef&) const = default;
 };
 
 struct SkinDef {
@@ -153,6 +166,7 @@ struct SkinDef {
   std::optional<SkinPointsDef> points;
   SkinContactDef contact;
   std::vector<SkinPartDef> parts;  // of an imported mesh
+  bool operator==(const SkinDef&) const = default;
 };
 
 }  // namespace fascia
