@@ -25,7 +25,7 @@ struct Scene {
   Scene(const std::string& name, int columns, int rows)
       : character(loadCharacter(FASCIA_SOURCE_DIR "/examples/" + name + ".fascia.json",
                                 gridOf(columns, rows))),
-        state(initialState(character, -1)) {}
+        state(initialState(character, character.source(-1))) {}
   const Skin& skin() const { return *character.skin(); }
 };
 

@@ -21,11 +21,11 @@ void buildAndRun(const fascia::CharacterFile& file) {
   options.rows = 8;
   options.integrator = "auto";
   const fascia::Character character = fascia::buildCharacter(file, options);
-  const int motion = character.motionCount() > 0 ? 0 : -1;
-  fascia::CharacterState state = fascia::initialState(character, motion);
+  const fascia::ClipSource source = character.source(character.motionCount() > 0 ? 0 : -1);
+  fascia::CharacterState state = fascia::initialState(character, source);
   fascia::SkinStats stats;
   for (int frame = 0; frame < 3; ++frame) {
-    fascia::advance(character, motion, 1.0 / 30, state, stats);
+    fascia::advance(character, source, 1.0 / 30, state, stats);
   }
 }
 

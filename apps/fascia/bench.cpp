@@ -16,6 +16,7 @@ void addBench(CLI::App& program, Console& console) {
   addDeformationBench(group, console);
   addReflexesBench(group, console);
   addEditingBench(group, console);
+  addDrawingBench(group, console);
 #ifdef FASCIA_WITH_BULLET
   addPeersBench(group, console);
 #endif

@@ -20,13 +20,14 @@ struct Footage {
 Footage simulateFootage(const std::string& input, SimulationOptions& options,
                         std::optional<double> only_s, const Console& console) {
   Character character = prepareCharacter(input, options, console);
-  RecordOptions record = options.recordOptions(character);
+  const int motion = chooseMotion(character, options.motion);
+  RecordOptions record = options.recordOptions();
   if (only_s)
     keepOnly(
         *only_s,
         record.frame_rate_hz > 0 ? record.frame_rate_hz : character.def().simulation.frame_rate_hz,
         record);
-  Recording recording = simulate(character, record, console);
+  Recording recording = simulate(character, motion, record, console);
   Texture texture = loadTexture(character.def());
   return {std::move(character), std::move(recording), std::move(texture)};
 }
@@ -38,8 +39,11 @@ Footage cachedFootage(const std::string& input) {
 
 class CharacterFilm final : public Film {
  public:
-  CharacterFilm(Footage footage, const FilmLook& look, const Console& console)
-      : footage_(std::move(footage)), player_(footage_.character, footage_.recording) {
+  // cache: the file that the footage was read from, if it was.
+  CharacterFilm(Footage footage, std::string cache, const FilmLook& look, const Console& console)
+      : footage_(std::move(footage)),
+        cache_(std::move(cache)),
+        player_(footage_.character, footage_.recording) {
     if (footage_.recording.frames.empty()) throw Error("there are no frames to draw");
     const std::string& motion = footage_.recording.motion;
     options_.layers = parseLayers(look.layers);
@@ -62,11 +66,12 @@ class CharacterFilm final : public Film {
   }
   std::string stats() const override { return statsJson(footage_.recording); }
   void report(const std::vector<std::string>& outputs, const Console& console) const override {
-    reportRecording(footage_.recording, outputs, console);
+    reportRecording(footage_.recording, outputs, console, cache_);
   }
 
  private:
   Footage footage_;
+  std::string cache_;
   Player player_;
   Reach reach_;
   SceneOptions options_;
@@ -77,10 +82,11 @@ class CharacterFilm final : public Film {
 std::unique_ptr<Film> makeCharacterFilm(const std::string& input, SimulationOptions& options,
                                         std::optional<double> only_s, const FilmLook& look,
                                         const Console& console) {
-  return std::make_unique<CharacterFilm>(endingOf(input) == ".fcache"
-                                             ? cachedFootage(input)
-                                             : simulateFootage(input, options, only_s, console),
-                                         look, console);
+  const bool cached = endingOf(input) == ".fcache";
+  Footage footage =
+      cached ? cachedFootage(input) : simulateFootage(input, options, only_s, console);
+  return std::make_unique<CharacterFilm>(std::move(footage), cached ? input : std::string(), look,
+                                         console);
 }
 
 }  // namespace fascia

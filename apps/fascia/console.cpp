@@ -1,7 +1,6 @@
 #include "console.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 namespace fascia {
@@ -38,7 +37,7 @@ void Console::fail(const Error& error) const {
 }
 
 bool Console::showsProgress() const {
-  return !json_ && !quiet_ && isatty(STDERR_FILENO) == 1;
+  return !json_ && !quiet_;
 }
 
 Json toJson(const std::vector<Issue>& issues) {

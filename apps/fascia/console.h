@@ -26,7 +26,7 @@ class Console {
   // Every issue a line on stderr; with --json the answer, unless one was given.
   void fail(const Error& error) const;
 
-  // Whether a moving progress bar makes sense: someone is watching, and wants text.
+  // Whether to tell how far the work is: someone wants text.
   bool showsProgress() const;
 
  private:

@@ -72,25 +72,44 @@ void checkOverwriting(const std::vector<std::string>& inputs,
   }
 }
 
+namespace {
+
+Json withStats(Json answer, const Recording& recording) {
+  std::vector<Issue> issues;
+  answer.set("stats", parseJson(statsJson(recording), JsonLimits{}, issues));
+  return answer;
+}
+
+Json answerOf(const std::vector<std::string>& outputs) {
+  Json::List written;
+  for (const std::string& path : outputs) written.push_back(path);
+  return Json::Object{{"ok", true}, {"outputs", written}};
+}
+
+std::string sizeOf(const Recording& r) {
+  return fmt::format("{} frames, {} vertices", r.frames.size(), r.skin.positions.size());
+}
+
+std::string simulatedIn(const Recording& r) {
+  const double ratio = r.wall_s > 0 ? r.simulated_s / r.wall_s : 0;
+  return fmt::format("{}: simulated {:.4g} s in {:.2g} s ({:.0f} × real time)", sizeOf(r),
+                     r.simulated_s, r.wall_s, ratio);
+}
+
+}  // namespace
+
 void reportRecordings(std::span<const Recording* const> recordings,
                       const std::vector<std::string>& outputs, const Console& console,
                       const Json::Object& more) {
   const bool several = recordings.size() > 1;
-  Json::List written, motions;
-  for (const std::string& path : outputs) written.push_back(path);
-  Json answer = Json::Object{{"ok", true}, {"outputs", written}};
+  Json::List motions;
+  Json answer = answerOf(outputs);
   for (const Recording* r : recordings) {
-    const double ratio = r->wall_s > 0 ? r->simulated_s / r->wall_s : 0;
-    console.say(
-        fmt::format("{}{} frames, {} vertices: simulated {:.4g} s in {:.2g} s ({:.0f} × real time)",
-                    several ? r->motion + ": " : std::string(), r->frames.size(),
-                    r->skin.positions.size(), r->simulated_s, r->wall_s, ratio));
-    std::vector<Issue> issues;
-    Json stats = parseJson(statsJson(*r), JsonLimits{}, issues);
+    console.say((several ? r->motion + ": " : std::string()) + simulatedIn(*r));
     if (several)
-      motions.push_back(Json::Object{{"motion", r->motion}, {"stats", std::move(stats)}});
+      motions.push_back(withStats(Json::Object{{"motion", r->motion}}, *r));
     else
-      answer.set("stats", std::move(stats));
+      answer = withStats(std::move(answer), *r);
   }
   if (several) answer.set("motions", std::move(motions));
   for (const Json::Member& member : more) answer.set(member.key, member.value);
@@ -98,9 +117,12 @@ void reportRecordings(std::span<const Recording* const> recordings,
 }
 
 void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
-                     const Console& console, const Json::Object& more) {
-  const Recording* const one = &recording;
-  reportRecordings({&one, 1}, outputs, console, more);
+                     const Console& console, const std::string& cache) {
+  if (cache.empty())
+    console.say(simulatedIn(recording));
+  else
+    console.say(sizeOf(recording) + ": read from cache " + cache);
+  console.answer(withStats(answerOf(outputs), recording));
 }
 
 }  // namespace fascia

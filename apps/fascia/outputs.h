@@ -29,7 +29,8 @@ void checkOverwriting(const std::vector<std::string>& inputs,
 void reportRecordings(std::span<const Recording* const> recordings,
                       const std::vector<std::string>& outputs, const Console& console,
                       const Json::Object& more = {});
+// Of one that was not simulated now, but came from the file `cache` if that is named.
 void reportRecording(const Recording& recording, const std::vector<std::string>& outputs,
-                     const Console& console, const Json::Object& more = {});
+                     const Console& console, const std::string& cache = {});
 
 }  // namespace fascia

@@ -53,7 +53,7 @@ void Player::seek(double time_s) {
       throw Error("the recording's soft solids are not those of the character");
     soft->setShapes(frame.soft_shapes, frame.time_s, state_.bodies);
   }
-  poseLayers(character_, motion_, false, state_);
+  poseLayers(character_, character_.source(motion_), false, state_);
   skin_.positions = frame.skin_m;
   if (creases_) {
     if (frame.skin_m.empty()) blended_->compute(state_, skin_.positions);
@@ -73,7 +73,7 @@ Reach motionReach(const Character& character, int motion) {
   Reach reach;
   for (int i = 0; i <= kReachSamples; ++i) {
     state.time_s = duration_s * i / kReachSamples;
-    poseLayers(character, motion, false, state);
+    poseLayers(character, character.source(motion), false, state);
     if (blended) {
       blended->compute(state, surface);
       for (const Eigen::Vector3f& p : surface) reach.add(p.cast<double>());

@@ -33,18 +33,19 @@ Examples:
 
 struct RenderOptions {
   std::string input, output, stats;
-  std::string size = "1280x720", camera, layers = "skin";
+  std::string size = "1280x720", camera, layers = "skin", look = "full";
   double time_s = 0;
   double frame_rate_hz = 30;
   SimulationOptions simulation;
 
   bool video() const { return endingOf(output) == ".mp4"; }
+  Look drawnLook() const { return look == "fast" ? Look::fast : Look::full; }
 };
 
 // Draws moments of a film.
 class Shooting {
  public:
-  Shooting(Film& film, Size size) : film_(film), size_(size) {}
+  Shooting(Film& film, Size size, Look look) : film_(film), size_(size), renderer_(look) {}
 
   const Image& at(double time_s) {
     renderer_.render(film_.at(time_s), size_.width, size_.height, pixels_);
@@ -63,12 +64,12 @@ class Shooting {
 };
 
 void shootVideo(Film& film, Size size, const RenderOptions& options, const Console& console) {
-  Shooting shooting(film, size);
+  ProgressBar progress(console, "drawing");
+  Shooting shooting(film, size, options.drawnLook());
   const double length_s = film.end_s() - film.start_s();
   const int frames = std::max(1, static_cast<int>(std::lround(length_s * options.frame_rate_hz)));
   VideoWriter video(options.output, size.width, size.height,
                     {.frame_rate_hz = options.frame_rate_hz});
-  ProgressBar progress(console, "drawing");
   for (int i = 0; i < frames; ++i) {
     video.add(shooting.at(film.start_s() + i / options.frame_rate_hz));
     if (!progress.update((i + 1.0) / frames)) throw Interrupted{};
@@ -91,7 +92,7 @@ void render(RenderOptions& options, const Console& console) {
   if (options.video())
     shootVideo(*film, size, options, console);
   else
-    writePng(Shooting(*film, size).at(options.time_s), options.output);
+    writePng(Shooting(*film, size, options.drawnLook()).at(options.time_s), options.output);
   if (!options.stats.empty()) writeFileWhole(options.stats, film->stats());
   console.say("wrote " + options.output);
   film->report({options.output}, console);
@@ -112,6 +113,12 @@ void addPictureOptions(CLI::App& command, RenderOptions& options) {
   command.add_option("--layers", options.layers, "What to show: skeleton, muscle, skin or all")
       ->type_name("LIST")
       ->check(parsedBy(parseLayers));
+  command
+      .add_option("--look", options.look,
+                  "full, or fast: plain light and hard shadows, several times as fast "
+                  "(default: full)")
+      ->type_name("LOOK")
+      ->check(CLI::IsMember({"full", "fast"}).description(""));
   command.add_option("--fps", options.frame_rate_hz, "Frames per second of a video (default: 30)")
       ->type_name("HZ")
       ->check(numberIn(1, 240));

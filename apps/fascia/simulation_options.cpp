@@ -75,9 +75,8 @@ BuildOptions SimulationOptions::buildOptions() const {
   return {.columns = size.width, .rows = size.height, .integrator = integrator, .step_s = step_s};
 }
 
-RecordOptions SimulationOptions::recordOptions(const Character& character) const {
+RecordOptions SimulationOptions::recordOptions() const {
   RecordOptions options;
-  options.motion = chooseMotion(character, motion);
   options.frame_rate_hz = frame_rate_hz;
   options.duration_s = duration_s;
   return options;
@@ -134,14 +133,14 @@ int chooseMotion(const Character& character, const std::string& name) {
   throw Error(std::move(issue));
 }
 
-Recording simulate(const Character& character, RecordOptions options, const Console& console,
-                   const std::string& what) {
+Recording simulate(const Character& character, int motion, RecordOptions options,
+                   const Console& console, const std::string& what) {
   ProgressBar progress(console, what);
   options.progress = [&](double fraction) {
     if (!progress.update(fraction)) throw Interrupted{};
     return true;
   };
-  return record(character, options);
+  return record(character, character.source(motion), options);
 }
 
 }  // namespace fascia

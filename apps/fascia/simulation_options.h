@@ -30,7 +30,7 @@ struct SimulationOptions {
   void addTo(CLI::App& command);
   void addMotionTo(CLI::App& command);
   BuildOptions buildOptions() const;
-  RecordOptions recordOptions(const Character& character) const;
+  RecordOptions recordOptions() const;
 };
 
 struct Size {
@@ -66,8 +66,8 @@ Character prepareCharacter(CharacterFile file, SimulationOptions& options, const
 // The index of the motion to use; -1 = the character has none. Throws for an unknown name.
 int chooseMotion(const Character& character, const std::string& name);
 
-// Simulates with a progress bar. Throws Interrupted on Ctrl-C.
-Recording simulate(const Character& character, RecordOptions options, const Console& console,
-                   const std::string& what = "simulating");
+// Simulates a motion (-1: the rest posture) with a progress bar. Throws Interrupted on Ctrl-C.
+Recording simulate(const Character& character, int motion, RecordOptions options,
+                   const Console& console, const std::string& what = "simulating");
 
 }  // namespace fascia

@@ -35,8 +35,10 @@ SceneCache performScene(const std::string& input, const SimulationOptions& optio
 
 class StageFilm final : public Film {
  public:
-  StageFilm(SceneCache scene, const FilmLook& look, const Console& console)
+  // cache: the file that the scene was read from, if it was.
+  StageFilm(SceneCache scene, std::string cache, const FilmLook& look, const Console& console)
       : scene_(std::move(scene)),
+        cache_(std::move(cache)),
         pictures_(scene_.stage),
         player_(scene_.stage, scene_.recording, scene_.textures, console) {
     if (scene_.recording.frames.empty()) throw Error("there are no frames to draw");
@@ -65,7 +67,7 @@ class StageFilm final : public Film {
   }
   std::string stats() const override { return statsJson(scene_.stage, scene_.recording); }
   void report(const std::vector<std::string>& outputs, const Console& console) const override {
-    reportPerformance(scene_.stage, scene_.recording, outputs, console);
+    reportPerformance(scene_.stage, scene_.recording, outputs, console, cache_);
   }
 
  private:
@@ -80,6 +82,7 @@ class StageFilm final : public Film {
   }
 
   SceneCache scene_;
+  std::string cache_;
   StagePictures pictures_;
   StagePlayer player_;
   Reach reach_;
@@ -91,10 +94,11 @@ class StageFilm final : public Film {
 std::unique_ptr<Film> makeStageFilm(const std::string& input, SimulationOptions& options,
                                     std::optional<double> only_s, const FilmLook& look,
                                     const Console& console) {
-  return std::make_unique<StageFilm>(endingOf(input) == ".fcache"
-                                         ? parseSceneCache(readCacheBytes(input), input)
-                                         : performScene(input, options, only_s, console),
-                                     look, console);
+  const bool cached = endingOf(input) == ".fcache";
+  SceneCache scene = cached ? parseSceneCache(readCacheBytes(input), input)
+                            : performScene(input, options, only_s, console);
+  return std::make_unique<StageFilm>(std::move(scene), cached ? input : std::string(), look,
+                                     console);
 }
 
 }  // namespace fascia

@@ -34,14 +34,17 @@ StageRecording perform(const Stage& stage, StageRecordOptions options, const Con
 }
 
 void reportPerformance(const Stage& stage, const StageRecording& recording,
-                       const std::vector<std::string>& outputs, const Console& console) {
+                       const std::vector<std::string>& outputs, const Console& console,
+                       const std::string& cache) {
   for (const ScriptLogLine& line : recording.log)
     console.say(fmt::format("{:7.3f} s  {}", line.time_s, line.text));
   const double ratio = recording.wall_s > 0 ? recording.simulated_s / recording.wall_s : 0;
-  console.say(
-      fmt::format("{} frames, {} bodies: simulated {:.4g} s in {:.2g} s ({:.0f} × real time)",
-                  recording.frames.size(), stage.bodies().bodyCount(), recording.simulated_s,
-                  recording.wall_s, ratio));
+  const std::string origin =
+      cache.empty() ? fmt::format("simulated {:.4g} s in {:.2g} s ({:.0f} × real time)",
+                                  recording.simulated_s, recording.wall_s, ratio)
+                    : "read from cache " + cache;
+  console.say(fmt::format("{} frames, {} bodies: {}", recording.frames.size(),
+                          stage.bodies().bodyCount(), origin));
   if (recording.outcome == ScriptOutcome::succeeded) console.say("the script has succeeded");
   if (recording.outcome == ScriptOutcome::failed)
     console.hint("the script has failed" +

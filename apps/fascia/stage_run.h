@@ -17,8 +17,10 @@ StageRecordOptions stageRecordOptions(const SimulationOptions& options);
 // Performs with a progress bar. Throws Interrupted on Ctrl-C.
 StageRecording perform(const Stage& stage, StageRecordOptions options, const Console& console);
 
-// A few lines about a performance for a person, the whole statistics for a machine.
+// A few lines about a performance for a person, the whole statistics for a machine. cache: the file
+// that it was read from, if it did not happen now.
 void reportPerformance(const Stage& stage, const StageRecording& recording,
-                       const std::vector<std::string>& outputs, const Console& console);
+                       const std::vector<std::string>& outputs, const Console& console,
+                       const std::string& cache = {});
 
 }  // namespace fascia

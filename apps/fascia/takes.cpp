@@ -230,13 +230,12 @@ Cast prepareCast(const std::string& path, const TakeOptions& takes, SimulationOp
 Shot shoot(const Cast& cast, const Take& take, const SimulationOptions& options,
            const Console& console) {
   RecordOptions record;
-  record.motion = take.played;
   record.frame_rate_hz = options.frame_rate_hz;
   record.duration_s = options.duration_s;
   Shot shot;
   const std::string what = cast.takes.size() > 1 ? "simulating " + take.motion : "simulating";
   if (!take.cycle) {
-    shot.recording = simulate(cast.character, record, console, what);
+    shot.recording = simulate(cast.character, take.played, record, console, what);
     shot.joints_world = jointFrames(cast.character, shot.recording);
     return shot;
   }
@@ -245,7 +244,7 @@ Shot shoot(const Cast& cast, const Take& take, const SimulationOptions& options,
   record.frame_rate_hz = rateFor(cast, take, rate_hz);
   record.duration_s = 2 * take.cycle->period_s;
   record.start_s = take.cycle->period_s;
-  shot.recording = simulate(cast.character, record, console, what);
+  shot.recording = simulate(cast.character, take.played, record, console, what);
   closeEnds(cast, take, shot);
   return shot;
 }

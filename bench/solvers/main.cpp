@@ -47,7 +47,7 @@ class Comparison {
     height_m_ = heightOf(usual.skin()->restPosition());
     const Character fine =
         build("leapfrog", step_s_ / kRefinement, options.interval_s / kRefinement);
-    start_ = initialState(fine, run_.motion).skin;
+    start_ = initialState(fine, fine.source(run_.motion)).skin;
     reference_ = runLibrary(fine, start_, run_);
   }
 

@@ -31,7 +31,7 @@ class SchemeRunner {
         velocity_(start.velocity) {
     around_.resize(skin_.grid()->layout().storage());
     nextAnchor_.resize(skin_.grid()->layout().storage());
-    poseLayers(character_, motion_, true, state_);
+    poseLayers(character_, character_.source(motion_), true, state_);
     skin_.grid()->anchors().place(state_.flesh, scratch_, around_.anchor);
     project(skin_.settings().interval_s);
   }
@@ -43,7 +43,7 @@ class SchemeRunner {
     for (int n = 0; n < intervals; ++n) {
       const double duration_s = kFrame_s / intervals;
       state_.time_s += duration_s;
-      poseLayers(character_, motion_, true, state_);
+      poseLayers(character_, character_.source(motion_), true, state_);
       moveAnchors(static_cast<float>(1 / duration_s));
       const double begin_s = now_s();
       scheme_.run({&around_, duration_s, steps}, position_, velocity_);
@@ -98,14 +98,14 @@ class SchemeRunner {
 Trajectory runLibrary(const Character& character, const SkinState& start,
                       const RunOptions& options) {
   CharacterState state;
-  poseLayers(character, options.motion, true, state);
+  poseLayers(character, character.source(options.motion), true, state);
   state.skin.position = start.position;
   state.skin.velocity = start.velocity;
   Trajectory out;
   SkinStats stats;
   for (int f = 0; f < options.frames; ++f) {
     const double begin_s = now_s();
-    advance(character, options.motion, kFrame_s, state, stats);
+    advance(character, character.source(options.motion), kFrame_s, state, stats);
     out.cpu_s += now_s() - begin_s;
     out.frames.push_back(state.skin.position);
   }

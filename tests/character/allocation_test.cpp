@@ -17,14 +17,14 @@ TEST(Allocation, AdvancingMakesNoneAfterWarmUp) {
     if (side == 16) soft.basis.kind = BodyBasisDef::Kind::polynomial;
     const Character character(def);
     ASSERT_EQ(character.skin()->coarse() != nullptr, side == 80);
-    CharacterState state = initialState(character, 0);
+    CharacterState state = initialState(character, character.source(0));
     SkinStats stats;
     const long before = allocations;
     const CharacterState copy = state;
     EXPECT_GT(allocations, before);  // the counter counts
-    for (int f = 0; f < 3; ++f) advance(character, 0, 1.0 / 60, state, stats);
+    for (int f = 0; f < 3; ++f) advance(character, character.source(0), 1.0 / 60, state, stats);
     const long warm = allocations;
-    for (int f = 0; f < 20; ++f) advance(character, 0, 1.0 / 60, state, stats);
+    for (int f = 0; f < 20; ++f) advance(character, character.source(0), 1.0 / 60, state, stats);
     EXPECT_EQ(allocations - warm, 0) << side;
   }
 }

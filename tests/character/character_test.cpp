@@ -14,7 +14,7 @@ using test::hashAfter;
 
 CharacterState run(const Character& character, int frames, CharacterState state) {
   SkinStats stats;
-  for (int f = 0; f < frames; ++f) advance(character, 0, 1.0 / 60, state, stats);
+  for (int f = 0; f < frames; ++f) advance(character, character.source(0), 1.0 / 60, state, stats);
   return state;
 }
 
@@ -46,7 +46,7 @@ TEST(Determinism, TheBuiltSkinHasTheSameBitsOnAnyNumberOfThreads) {
 TEST(CharacterState, RewoundToACopyGivesTheSameBits) {
   for (const int side : {16, 80}) {
     const Character character(test::fineCharacter(side));
-    CharacterState state = run(character, 5, initialState(character, 0));
+    CharacterState state = run(character, 5, initialState(character, character.source(0)));
     const CharacterState saved = state;
     const std::uint64_t before = hashOf(character, state);
     state = run(character, 7, std::move(state));
@@ -62,7 +62,7 @@ TEST(CharacterState, RewoundToACopyGivesTheSameBits) {
 
 TEST(CharacterState, HashCoversEveryPointsPositionAndVelocity) {
   const Character character(test::smallCharacter());
-  CharacterState state = initialState(character, 0);
+  CharacterState state = initialState(character, character.source(0));
   const std::uint64_t hash = hashOf(character, state);
   const std::size_t k = character.skin()->grid()->layout().at(11, 15);
   for (FloatArray* value : {&state.skin.position.x, &state.skin.velocity.z}) {
@@ -78,7 +78,7 @@ TEST(Character, SettlesBeforeItStarts) {
   CharacterDef def = test::smallCharacter();
   def.simulation.settle_s = 2;
   const Character character(def);
-  const CharacterState state = initialState(character, -1);
+  const CharacterState state = initialState(character, character.source(-1));
   EXPECT_EQ(state.time_s, 0);
   EXPECT_LT(state.skin.maxSpeed_m_per_s, 0.02f);
 }
@@ -91,8 +91,9 @@ TEST(Character, OfFrozenPostureComesToTheSameRestWithAnyFrameRate) {
   SkinStats stats;
   for (int n = 0; n < 2; ++n) {
     const double frame = n == 0 ? 1.0 / 120 : 1.0 / 15;
-    state[n] = initialState(character, -1);
-    for (int f = 0; f < 6 / frame; ++f) advance(character, -1, frame, state[n], stats);
+    state[n] = initialState(character, character.source(-1));
+    for (int f = 0; f < 6 / frame; ++f)
+      advance(character, character.source(-1), frame, state[n], stats);
   }
   const GridLayout& g = character.skin()->grid()->layout();
   double farthest = 0;
@@ -105,10 +106,11 @@ TEST(Character, OfFrozenPostureComesToTheSameRestWithAnyFrameRate) {
 
 TEST(Character, DividesLongFrames) {
   const Character character(test::smallCharacter());
-  CharacterState whole = initialState(character, 0), parts = initialState(character, 0);
+  CharacterState whole = initialState(character, character.source(0)),
+                 parts = initialState(character, character.source(0));
   SkinStats stats;
-  advance(character, 0, 0.25, whole, stats);
-  for (int i = 0; i < 3; ++i) advance(character, 0, 0.25 / 3, parts, stats);
+  advance(character, character.source(0), 0.25, whole, stats);
+  for (int i = 0; i < 3; ++i) advance(character, character.source(0), 0.25 / 3, parts, stats);
   EXPECT_NEAR(whole.time_s, parts.time_s, 1e-12);
   const std::size_t k = character.skin()->grid()->layout().at(3, 8);
   EXPECT_NEAR(whole.skin.position.x[k], parts.skin.position.x[k], 1e-4);
@@ -121,7 +123,7 @@ TEST(Resolution, CanChangeAtAnyMomentOfARun) {
   const Character coarse(def);
   def.skin->columns = 30, def.skin->rows = 41;
   const Character fine(def);
-  CharacterState state = run(coarse, 9, initialState(coarse, 0));
+  CharacterState state = run(coarse, 9, initialState(coarse, coarse.source(0)));
   const Character* from = &coarse;
   SkinStats stats;
   for (const Character* to : {&fine, &coarse, &fine}) {
@@ -135,7 +137,7 @@ TEST(Resolution, CanChangeAtAnyMomentOfARun) {
         next.skin.position.x[to->skin()->grid()->layout().at(0, to->skin()->grid()->rows() / 2)],
         middle, 0.05);
     for (int f = 0; f < 10; ++f) {
-      advance(*to, 0, 1.0 / 60, next, stats);
+      advance(*to, to->source(0), 1.0 / 60, next, stats);
       EXPECT_TRUE(test::allFinite(*to, next));
       measureSkin(*to->skin(), {&next.flesh, next.skeleton.joint_world}, next.skin, stats);
     }
@@ -182,22 +184,22 @@ TEST(CharacterFaults, OfOverridesAreFoundToo) {
 TEST(Recording, HoldsAFrameForEveryMomentFromStartToEnd) {
   const Character character(test::smallCharacter());
   RecordOptions options;
-  options.motion = 0, options.frame_rate_hz = 30, options.duration_s = 0.5;
+  options.frame_rate_hz = 30, options.duration_s = 0.5;
   std::vector<double> progress;
   options.progress = [&](double done) {
     progress.push_back(done);
     return true;
   };
-  const Recording recording = record(character, options);
+  const Recording recording = record(character, character.source(0), options);
   ASSERT_EQ(recording.frames.size(), 16u);
   EXPECT_NEAR(recording.frames[15].time_s, 0.5, 1e-9);
   EXPECT_EQ(recording.frames[3].skin_m.size(), recording.skin.positions.size());
   EXPECT_EQ(recording.skin.positions.size(), 13u * 16 + 2);
   EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
   EXPECT_EQ(progress.back(), 1);
-  CharacterState state = initialState(character, 0);
+  CharacterState state = initialState(character, character.source(0));
   SkinStats stats;
-  for (int f = 0; f < 15; ++f) advance(character, 0, 1.0 / 30, state, stats);
+  for (int f = 0; f < 15; ++f) advance(character, character.source(0), 1.0 / 30, state, stats);
   EXPECT_EQ(recording.state_hash, hashOf(character, state));  // what a player sees is what is baked
 }
 
@@ -206,7 +208,7 @@ TEST(Recording, StopsWhenAsked) {
   RecordOptions options;
   options.duration_s = 1;
   options.progress = [](double done) { return done < 0.1; };
-  EXPECT_THROW(record(character, options), Error);
+  EXPECT_THROW(record(character, character.source(-1), options), Error);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ void expectSameModels(const Skin& a, const Skin& b) {
 class EditedRun {
  public:
   explicit EditedRun(const Character& start)
-      : character_(start), wrapped_(start), state_(initialState(start, 0)) {}
+      : character_(start), wrapped_(start), state_(initialState(start, start.source(0))) {}
 
   void edit(const CharacterDef& next) {
     const Character edited = character_.edited(next);
@@ -61,7 +61,7 @@ class EditedRun {
     state_ = std::move(state);
   }
   void frame() {
-    advance(character_, motion_, 1.0 / 60, state_, stats_);
+    advance(character_, character_.source(motion_), 1.0 / 60, state_, stats_);
     measureSkin(*character_.skin(), {&state_.flesh, state_.skeleton.joint_world}, state_.skin,
                 stats_);
     finite_ = finite_ && test::allFinite(character_, state_);

@@ -40,9 +40,9 @@ TEST_P(Examples, HaveTheSameBitsOnAnyNumberOfThreadsWithEveryIntegrator) {
       const ThreadLimit limit(n == 0 ? 1 : 4);
       CharacterState state;
       SkinStats stats;
-      poseLayers(character, 0, false, state);
+      poseLayers(character, character.source(0), false, state);
       placeSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin);
-      for (int f = 0; f < 2; ++f) advance(character, 0, 1.0 / 60, state, stats);
+      for (int f = 0; f < 2; ++f) advance(character, character.source(0), 1.0 / 60, state, stats);
       hash[n] = hashOf(character, state);
     }
     EXPECT_EQ(hash[0], hash[1]) << integrator.name;

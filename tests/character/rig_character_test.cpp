@@ -41,11 +41,12 @@ TEST(RigCharacter, SkinRidesOnSoftFlesh) {
   soft.rigidity_Pa = 4e3, soft.volume_Pa = 1e4;
   const Character character(def);
   const int walk = character.findMotion("Walk");
-  CharacterState state = initialState(character, walk), before = initialState(rigid, walk);
+  CharacterState state = initialState(character, character.source(walk)),
+                 before = initialState(rigid, rigid.source(walk));
   SkinStats stats, ignored;
   for (int frame = 0; frame < 10; ++frame) {
-    advance(character, walk, 1.0 / 30, state, stats);
-    advance(rigid, walk, 1.0 / 30, before, ignored);
+    advance(character, character.source(walk), 1.0 / 30, state, stats);
+    advance(rigid, rigid.source(walk), 1.0 / 30, before, ignored);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin, stats);
   }
   const double height_m = def.rig->model->height_m();
@@ -66,12 +67,12 @@ TEST(RigCharacter, WalksInItsSkin) {
   const RiggedModel& rig = *character.def().rig->model;
   const int walk = character.findMotion("Walk");
   ASSERT_GE(walk, 0);
-  CharacterState state = initialState(character, walk);
+  CharacterState state = initialState(character, character.source(walk));
   SkinStats stats;
   TriangleMesh before, mesh;
   skinSurface(*character.skin(), state.skin, before);
   for (int frame = 0; frame < 30; ++frame) {
-    advance(character, walk, 1.0 / 30, state, stats);
+    advance(character, character.source(walk), 1.0 / 30, state, stats);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin, stats);
   }
   skinSurface(*character.skin(), state.skin, mesh);
@@ -94,7 +95,7 @@ TEST(RigCharacter, MovesItsJointsAsTheFileDoes) {
   const Character character(def);
   const RiggedModel& rig = *character.def().rig->model;
   ASSERT_EQ(character.motionCount(), rig.motions.size());
-  CharacterState rest = initialState(character, -1);
+  CharacterState rest = initialState(character, character.source(-1));
   for (std::size_t m = 0; m < rig.motions.size(); ++m) {
     const int motion = character.findMotion(rig.motions[m].name);
     ASSERT_GE(motion, 0);
@@ -102,7 +103,7 @@ TEST(RigCharacter, MovesItsJointsAsTheFileDoes) {
     std::vector<Transform> world;
     for (const double time : {0.0, 0.31, 0.77}) {
       state.time_s = time;
-      poseLayers(character, motion, true, state);
+      poseLayers(character, character.source(motion), true, state);
       poseRig(rig, static_cast<int>(m), time, world);
       for (std::size_t j = 0; j < rig.joints.size(); ++j) {
         const std::size_t k = character.skeleton().find(rig.joints[j].name).index();

@@ -133,10 +133,10 @@ struct Worst {
 inline Worst simulate(const Character& character, int motion, double frame_s, int frames,
                       const std::function<void(CharacterState&, int)>& before = {}) {
   Worst worst;
-  CharacterState state = initialState(character, motion);
+  CharacterState state = initialState(character, character.source(motion));
   for (int f = 0; f < frames; ++f) {
     if (before) before(state, f);
-    advance(character, motion, frame_s, state, worst.stats);
+    advance(character, character.source(motion), frame_s, state, worst.stats);
     worst.finite = worst.finite && allFinite(character, state);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
                 worst.stats);
@@ -149,9 +149,9 @@ inline Worst simulate(const Character& character, int motion, double frame_s, in
 }
 
 inline std::uint64_t hashAfter(const Character& character, int frames) {
-  CharacterState state = initialState(character, 0);
+  CharacterState state = initialState(character, character.source(0));
   SkinStats stats;
-  for (int f = 0; f < frames; ++f) advance(character, 0, 1.0 / 60, state, stats);
+  for (int f = 0; f < frames; ++f) advance(character, character.source(0), 1.0 / 60, state, stats);
   return hashOf(character, state);
 }
 

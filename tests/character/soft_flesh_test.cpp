@@ -41,7 +41,8 @@ Vec3 middle(const CharacterState& state, std::int64_t solid = 0) {
 
 void run(const Character& character, int motion, int frames, CharacterState& state) {
   SkinStats stats;
-  for (int f = 0; f < frames; ++f) advance(character, motion, kFrame_s, state, stats);
+  for (int f = 0; f < frames; ++f)
+    advance(character, character.source(motion), kFrame_s, state, stats);
   EXPECT_EQ(stats.repaired_points, 0u);
 }
 
@@ -62,7 +63,7 @@ TEST(SoftFlesh, SagsByTheStaticSolutionAndComesToRest) {
   const double plane_m = 0.06;  // behind the centre
   soft.held_m = {{0.05, -0.03, -plane_m}, {-0.05, -0.03, -plane_m}, {0, 0.06, -plane_m}};
   const Character character(def);
-  CharacterState state = initialState(character, -1);
+  CharacterState state = initialState(character, character.source(-1));
   const double sag_m = 1000 * kGravity * plane_m * plane_m / (4 * soft.rigidity_Pa);
   const Vec3 rigid(0, 1, 0.15);
   EXPECT_NEAR(rigid.y() - middle(state).y(), sag_m, 0.01 * sag_m);
@@ -81,7 +82,7 @@ TEST(SoftFlesh, HeldPointsStayWithTheirJoint) {
                     {test::track("hip", "ty", {{0, 0}, {0.25, 0.1}, {0.5, 0}}),
                      test::track("hip", "ry", {{0, 0}, {0.2, 1}, {0.5, 0}})}}};
     const Character character(def);
-    CharacterState state = initialState(character, 0);
+    CharacterState state = initialState(character, character.source(0));
     const auto& part = character.softFlesh()->parts()[0];
     EXPECT_EQ(part.held_m.size(), basis.kind == BodyBasisDef::Kind::affine ? 3u : 6u);
     for (int f = 0; f < 30; ++f) {
@@ -108,12 +109,12 @@ TEST(SoftFlesh, LagsBehindAJointThatShakes) {
       keys.push_back({period_s * k / 16, 1e-3 * std::sin(2 * kPi * k / 16)});
     def.motions = {{"shake", period_s, true, {test::track("hip", "ty", keys)}}};
     const Character character(def);
-    CharacterState state = initialState(character, 0);
+    CharacterState state = initialState(character, character.source(0));
     SkinStats stats;
     constexpr int kSteps = 32;
     std::complex<double> sum = 0;  // the first Fourier term of the last period
     for (int f = 1; f <= periods * kSteps; ++f) {
-      advance(character, 0, period_s / kSteps, state, stats);
+      advance(character, character.source(0), period_s / kSteps, state, stats);
       if (f > (periods - 1) * kSteps)
         sum += (middle(state).y() - 1) * std::polar(1.0, -2 * kPi * f / kSteps);
     }
@@ -145,11 +146,11 @@ TEST(SoftFlesh, SkinStaysOutOfItAndFollowsIt) {
   const Vec3 below(0, -0.2, 0);
   for (const BodyBasisDef& basis : {BodyBasisDef{}, quadratic()}) {
     const Character character(skinnedJelly(basis));
-    CharacterState state = initialState(character, 0);
+    CharacterState state = initialState(character, character.source(0));
     SkinStats stats;
     double farthest_m = 0;
     for (int f = 0; f < 60; ++f) {
-      advance(character, 0, kFrame_s, state, stats);
+      advance(character, character.source(0), kFrame_s, state, stats);
       measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin, stats);
       farthest_m = std::max(farthest_m, (state.flesh.worldFromMaterial(SolidId(0), below) -
                                          state.flesh.rigid().frame(SolidId(0)).point(below))
@@ -165,7 +166,7 @@ TEST(SoftFlesh, HasTheSameBitsOnAnyNumberOfThreads) {
   const auto hash = [](int threads) {
     const ThreadLimit limit(threads);
     const Character character(skinnedJelly(quadratic()));
-    CharacterState state = initialState(character, 0);
+    CharacterState state = initialState(character, character.source(0));
     run(character, 0, 20, state);
     return hashOf(character, state);
   };
@@ -174,7 +175,7 @@ TEST(SoftFlesh, HasTheSameBitsOnAnyNumberOfThreads) {
 
 TEST(SoftFlesh, CopiedStatesGoOnAlike) {
   const Character character(skinnedJelly(quadratic()));
-  CharacterState state = initialState(character, 0);
+  CharacterState state = initialState(character, character.source(0));
   run(character, 0, 10, state);
   CharacterState copy = state;
   run(character, 0, 10, state);
@@ -192,10 +193,10 @@ TEST(SoftFlesh, ComesAlongWhenItsJointJumps) {
     keys.push_back({time_s, x_m, 1, 0, 0});
   def.motions = {{"jump", 1, false, {test::track("hip", "tx", keys)}}};
   const Character character(def);
-  CharacterState state = initialState(character, 0);
+  CharacterState state = initialState(character, character.source(0));
   SkinStats stats;
   for (int f = 0; f < 50; ++f) {
-    advance(character, 0, kFrame_s, state, stats);
+    advance(character, character.source(0), kFrame_s, state, stats);
     const Vec3 rigid = state.flesh.rigid().frame(SolidId(0)).translation_m;
     EXPECT_LT((middle(state) - rigid).norm(), 0.2) << f;
   }
@@ -207,15 +208,15 @@ TEST(SoftFlesh, RecordingShowsItAgain) {
   def.motions = {{"shake", 0.5, true, {test::track("hip", "ty", {{0, 0}, {0.25, 0.1}, {0.5, 0}})}}};
   const Character character(def);
   RecordOptions options;
-  options.motion = 0, options.duration_s = 0.3;
-  const Recording recording = record(character, options);
-  CharacterState lived = initialState(character, 0), shown;
+  options.duration_s = 0.3;
+  const Recording recording = record(character, character.source(0), options);
+  CharacterState lived = initialState(character, character.source(0)), shown;
   run(character, 0, 10, lived);
   const Recording::Frame& frame = recording.frames[10];
   ASSERT_EQ(frame.soft_shapes.size(), character.softFlesh()->shapeSize());
   shown.time_s = frame.time_s;
   character.softFlesh()->setShapes(frame.soft_shapes, frame.time_s, shown.bodies);
-  poseLayers(character, 0, false, shown);
+  poseLayers(character, character.source(0), false, shown);
   for (const Vec3& X : {Vec3(0, 0, 0), Vec3(0.05, 0.03, 0.08)})
     EXPECT_LT((shown.flesh.worldFromMaterial(SolidId(0), X) -
                lived.flesh.worldFromMaterial(SolidId(0), X))
@@ -223,7 +224,7 @@ TEST(SoftFlesh, RecordingShowsItAgain) {
               1e-9);
   // Any other time shows it where its joint is, at rest.
   shown.time_s = 0.25;
-  poseLayers(character, 0, false, shown);
+  poseLayers(character, character.source(0), false, shown);
   EXPECT_LT((middle(shown) - shown.flesh.rigid().frame(SolidId(0)).translation_m).norm(), 1e-9);
 }
 

@@ -12,6 +12,8 @@
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class CliRender : public Cli {
@@ -50,6 +52,33 @@ TEST_F(CliRender, SimulatesAsBakeDoes) {
   ASSERT_EQ(rendered.exitCode, 0) << rendered.err;
   EXPECT_EQ(rendered.json().at("stats").at("state_hash"),
             baked.json().at("stats").at("state_hash"));
+}
+
+TEST_F(CliRender, ACacheIsSaidToBeReadNotSimulated) {
+  ASSERT_EQ(run({"bake", "ball.fascia.json", "-o", "a.fcache"}).exitCode, 0);
+  const Outcome cached = run({"render", "a.fcache", "-o", "a.png", "--size", "32x24"});
+  EXPECT_THAT(cached.out, HasSubstr("read from cache a.fcache"));
+  EXPECT_THAT(cached.out, Not(HasSubstr("simulated")));
+  const Outcome fresh = run({"render", "ball.fascia.json", "-o", "b.png", "--size", "32x24"});
+  EXPECT_THAT(fresh.out, HasSubstr("simulated"));
+}
+
+TEST_F(CliRender, FastLookIsAnotherPictureOfTheSameSize) {
+  for (const char* look : {"full", "fast"})
+    ASSERT_EQ(run({"render", "ball.fascia.json", "-o", std::string(look) + ".png", "--size",
+                   "160x120", "--look", look})
+                  .exitCode,
+              0);
+  const fascia::Image fast = fascia::readImage((folder_ / "fast.png").string());
+  EXPECT_EQ(fast.width, 160);
+  EXPECT_EQ(fast.height, 120);
+  EXPECT_NE(content("full.png"), content("fast.png"));
+  EXPECT_NE(run({"render", "ball.fascia.json", "-o", "a.png", "--look", "slow"}).exitCode, 0);
+}
+
+TEST_F(CliRender, WhatIsSoonDoneShowsNoProgress) {
+  const Outcome outcome = run({"render", "ball.fascia.json", "-o", "a.png", "--size", "32x24"});
+  EXPECT_EQ(outcome.err, "");
 }
 
 TEST_F(CliRender, TimeOutsideOfTheCacheIsRefused) {

@@ -138,6 +138,15 @@ TEST(Image, PngComesBackExactly) {
   EXPECT_EQ(back.rgba, image.rgba);
 }
 
+TEST(Image, OpaquePicturesComeBackExactlyAndTakeLess) {
+  Image image = gradient(64, 48);
+  const std::size_t withAlpha = encodePng(image).size();
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  const std::string bytes = encodePng(image);
+  EXPECT_EQ(decodeImage(bytes).rgba, image.rgba);
+  EXPECT_LT(bytes.size(), withAlpha);
+}
+
 TEST(Image, DamagedPicturesAreErrors) {
   const std::string png = encodePng(gradient(33, 7));
   EXPECT_THROW(decodeImage(png.substr(0, png.size() / 2)), Error);

@@ -45,11 +45,8 @@ const char* const kMovingArm = R"({
 class MovingArm : public ::testing::Test {
  protected:
   MovingArm() : character_(readCharacterText(kMovingArm).def) {
-    for (const int motion : {0, 1}) {
-      RecordOptions options;
-      options.motion = motion;
-      recordings_.push_back(record(character_, options));
-    }
+    for (const int motion : {0, 1})
+      recordings_.push_back(record(character_, character_.source(motion)));
   }
 
   static GridBakeOptions options(GridWay way) {

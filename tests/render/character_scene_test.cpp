@@ -43,7 +43,7 @@ class CharacterSceneTest : public testing::Test {
   }
 
   Character character_{trunkWithArm()};
-  CharacterState state_ = initialState(character_, -1);
+  CharacterState state_ = initialState(character_, character_.source(-1));
   TriangleMesh skin_ = test::sphereMesh({0, 0.55f, 0}, 0.55f);
 };
 

@@ -161,7 +161,7 @@ TEST(BoneSizes, ShowOnlyWhatMovesTheSurface) {
   EXPECT_EQ(sizes.ball_m[0], 0);
   EXPECT_EQ(sizes.ball_m[6], 0);
   EXPECT_GT(sizes.ball_m[1], sizes.ball_m[5]);  // as thick as it is long
-  const CharacterState state = initialState(character, -1);
+  const CharacterState state = initialState(character, character.source(-1));
   const TriangleMesh mesh = boneMesh(character.skeleton(), state.skeleton, sizes);
   Box box;
   for (const Vec3f& p : mesh.positions) box.add(p.cast<double>());
@@ -171,7 +171,7 @@ TEST(BoneSizes, ShowOnlyWhatMovesTheSurface) {
 TEST(BlendedSkin, FollowsTheJointsOfTheCharacter) {
   const auto model = std::make_shared<const RiggedModel>(leggedModel());
   const Character character(leggedCharacter(model));
-  CharacterState state = initialState(character, -1);
+  CharacterState state = initialState(character, character.source(-1));
   BlendedSkin blended(character);
   std::vector<Vec3f> positions;
   blended.compute(state, positions);
@@ -187,7 +187,7 @@ TEST(BlendedSkin, FollowsTheJointsOfTheCharacter) {
 TEST(CharacterOnARig, ShowsItsSurfaceAndItsBones) {
   const auto model = std::make_shared<const RiggedModel>(leggedModel());
   const Character character(leggedCharacter(model));
-  const CharacterState state = initialState(character, -1);
+  const CharacterState state = initialState(character, character.source(-1));
   SceneOptions options;
   options.ground = false;
   const TriangleMesh skin = drawnCube(*model);

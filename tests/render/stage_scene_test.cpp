@@ -57,7 +57,7 @@ TEST(StageScene, CharactersAreAtTheirPlaces) {
   actor.heading_rad = 1;
   actor.character = std::make_shared<const Character>(doll);
   const Stage stage(def);
-  const CharacterState state = initialState(*actor.character, -1);
+  const CharacterState state = initialState(*actor.character, actor.character->source(-1));
   const TriangleMesh skin;
   SceneOptions options = withoutGround();
   options.layers = parseLayers("muscle");

@@ -56,15 +56,22 @@ std::vector<Edit> edits() {
        [](CharacterDef& d, int n) { d.flesh.solids[0].position_m.x() = 0.01 * wave(n); }},
       {"solid resized",
        [](CharacterDef& d, int n) {
-         FleshSolidDef& solid = d.flesh.solids.back();
-         const Shape& shape = *findShape(solid.solid.shape);
-         std::vector<double>& p = solid.solid.parameters;
+         // Of one that no driver sizes.
+         const auto solid = std::ranges::find_if(
+             d.flesh.solids, [](const FleshSolidDef& s) { return s.drivers.empty(); });
+         if (solid == d.flesh.solids.end()) return;
+         const Shape& shape = *findShape(solid->solid.shape);
+         std::vector<double>& p = solid->solid.parameters;
          for (std::size_t i = p.size(); i < shape.parameters().size(); ++i)
            p.push_back(shape.parameters()[i].standard);
          p[0] *= 1 + 0.01 * std::cos(0.7 * n);
        }},
       {"joint moved",
-       [](CharacterDef& d, int n) { d.skeleton.joints.back().offset_m.y() += 0.002 * wave(n); }},
+       [](CharacterDef& d, int n) {
+         const auto joint =
+             std::ranges::find(d.skeleton.joints, d.flesh.solids.back().joint, &JointDef::name);
+         joint->offset_m.y() += 0.002 * wave(n);
+       }},
       {"joint renamed",
        [](CharacterDef& d, int n) {
          renameJoint(d, d.skeleton.joints.back().name, "joint " + std::to_string(n));
@@ -90,11 +97,11 @@ struct Times {
 
 Times measure(const Character& start, const Edit& edit, int repeats) {
   Character character = start;
-  CharacterState state = initialState(character, 0);
+  CharacterState state = initialState(character, character.source(0));
   SkinStats stats;
   const auto frame = [&] {
     const auto begin = std::chrono::steady_clock::now();
-    advance(character, 0, 1.0 / 60, state, stats);
+    advance(character, character.source(0), 1.0 / 60, state, stats);
     return since_ms(begin);
   };
   std::vector<double> all[4];

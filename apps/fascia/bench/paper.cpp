@@ -60,9 +60,8 @@ struct PaperResult {
 PaperResult measure(const Character& character, const PaperRow& row, const std::string& integrator,
                     double seconds, const Console& console) {
   RecordOptions options;
-  options.motion = chooseMotion(character, {});
   options.duration_s = seconds;
-  const Recording recording = simulate(character, options, console);
+  const Recording recording = simulate(character, chooseMotion(character, {}), options, console);
   const SkinStats& stats = recording.stats;
   const double spent_s = stats.forces_s + stats.constraints_s + stats.other_s;
   PaperResult result;

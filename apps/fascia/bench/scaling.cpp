@@ -70,7 +70,7 @@ ScalingResult measure(const std::string& file, const BuildOptions& build, int th
   const auto character = std::make_unique<const Character>(loadCharacter(file, build));
   if (!character->skin()) throw Error("the character has no skin to measure");
   const int motion = chooseMotion(*character, options.motion);
-  CharacterState state = initialState(*character, motion);
+  CharacterState state = initialState(*character, character->source(motion));
 
   ScalingResult result;
   result.columns = build.columns, result.rows = build.rows, result.threads = threads;
@@ -80,7 +80,7 @@ ScalingResult measure(const std::string& file, const BuildOptions& build, int th
     if (interruptSignal() != 0) throw Interrupted{};
     if (f == kWarmFrames) result.stats = {}, wall_s = 0;
     const auto begin = std::chrono::steady_clock::now();
-    advance(*character, motion, kFrame_s, state, result.stats);
+    advance(*character, character->source(motion), kFrame_s, state, result.stats);
     wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (f % kMeasureEvery == 0)
       measureSkin(*character->skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,

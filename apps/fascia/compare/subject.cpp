@@ -68,19 +68,19 @@ Subject prepareSubject(const std::string& input, SimulationOptions& options,
   CharacterFile file = readSubject(input, console);
   requireRig(file.def, input);
   Character character = prepareCharacter(std::move(file), options, console);
-  RecordOptions record = options.recordOptions(character);
-  if (record.motion < 0)
+  const int motion = chooseMotion(character, options.motion);
+  if (motion < 0)
     refuse(input, "has no motion, and both sides are the same at rest",
            "--motion walk.bvh puts a motion capture file onto it");
+  RecordOptions record = options.recordOptions();
   const double rate_hz =
       record.frame_rate_hz > 0 ? record.frame_rate_hz : character.def().simulation.frame_rate_hz;
-  const double length_s = character.motion(static_cast<std::size_t>(record.motion)).duration_s;
+  const double length_s = character.motion(static_cast<std::size_t>(motion)).duration_s;
   if (only_s && *only_s > length_s + 0.5 / rate_hz)
     throw Error(fmt::format("--time {:g}: the motion '{}' ends at {:g} s", *only_s,
-                            character.motion(static_cast<std::size_t>(record.motion)).name,
-                            length_s));
+                            character.motion(static_cast<std::size_t>(motion)).name, length_s));
   if (only_s) keepOnly(*only_s, rate_hz, record);
-  Recording recording = simulate(character, record, console);
+  Recording recording = simulate(character, motion, record, console);
   return {std::move(character), std::move(recording)};
 }
 

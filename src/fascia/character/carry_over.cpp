@@ -33,13 +33,20 @@ Posture carryOver(const Skeleton& from, const Posture& posture, const Skeleton& 
   return out;
 }
 
-// Overrides of solids and parameters that are still there.
-void dropUnknown(const Flesh& flesh, std::vector<Flesh::ParameterOverride>& overrides) {
-  std::erase_if(overrides, [&](const Flesh::ParameterOverride& o) {
-    return !o.solid.valid() || o.solid.index() >= flesh.solidCount() || o.parameter < 0 ||
-           static_cast<std::size_t>(o.parameter) >= flesh.restSolid(o.solid).parameterCount();
-  });
-}
+// What moved the character last goes on for the moment of the edit.
+class AsItIs final : public PostureSource {
+ public:
+  AsItIs(const Posture& posture, const std::vector<Flesh::ParameterOverride>& parameters)
+      : posture_(posture), parameters_(parameters) {}
+  void sample(double, PostureSample& out) const override {
+    out.posture = posture_;
+    out.parameters = parameters_;
+  }
+
+ private:
+  Posture posture_;
+  std::vector<Flesh::ParameterOverride> parameters_;
+};
 
 // Whether a body of the one is described by the same functions as one of the other.
 bool sameShapes(const Character& a, const SoftFlesh::Part& x, const Character& b,
@@ -78,8 +85,6 @@ OdeState carryOverBodies(const Character& from, const CharacterState& state, con
 CharacterState carryOver(const Character& from, const CharacterState& state, const Character& to) {
   CharacterState out = state;
   out.posture = carryOver(from.skeleton(), state.posture, to.skeleton());
-  dropUnknown(to.flesh(), out.held);
-  dropUnknown(to.flesh(), out.parameters);
   if (from.softFlesh() != to.softFlesh()) {
     out.flesh = {};
     out.bodies = {};
@@ -88,14 +93,14 @@ CharacterState carryOver(const Character& from, const CharacterState& state, con
       out.bodies = carryOverBodies(from, state, to, out.skeleton);
     }
   }
-  poseLayers(to, -1, true, out);
+  poseLayers(to, AsItIs(out.posture, state.sampled.parameters), true, out);
   if (!to.skin()) {
     out.skin = {};
     return out;
   }
   const SkinPose pose{&out.flesh, out.skeleton.joint_world};
   if (from.skin()) {
-    out.skin = carryOver(*from.skin(), state.skin, *to.skin(), pose);
+    out.skin = carryOver(*from.skin(), std::move(out.skin), *to.skin(), pose);
   } else {
     placeSkin(*to.skin(), pose, out.skin);
     out.skin.starting = true;
@@ -111,11 +116,6 @@ void requireFits(const Character& character, const CharacterState& state) {
     if (const char* what = misfit(*character.skin(), state.skin)) refuse(what);
   if (character.softFlesh() && state.bodies.r.size() != character.softFlesh()->model().size())
     refuse("soft solids");
-  for (const Flesh::ParameterOverride& p : state.held)
-    if (p.solid.index() >= character.flesh().solidCount() || p.parameter < 0 ||
-        static_cast<std::size_t>(p.parameter) >=
-            character.flesh().restSolid(p.solid).parameterCount())
-      refuse("held parameters");
 }
 
 }  // namespace fascia

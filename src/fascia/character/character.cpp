@@ -32,14 +32,14 @@ void showBodies(const OdeState& bodies, bool moving, CharacterState& state) {
   state.flesh.soft().update(bodies.r, state.stillBodies);
 }
 
-// Poses the layers below the skin at any time of a motion, in the state's own memory. Soft solids
+// Poses the layers below the skin at any time, in the state's own memory. Soft solids
 // are taken from the interval that was stepped last, or as the state has them.
-class MotionPoses final : public SkinPoseSource {
+class LayerPoses final : public SkinPoseSource {
  public:
-  MotionPoses(const Character& character, int motion, bool moving, CharacterState& state,
-              Surroundings* surroundings = nullptr)
+  LayerPoses(const Character& character, const PostureSource& source, bool moving,
+             CharacterState& state, Surroundings* surroundings = nullptr)
       : character_(character),
-        motion_(motion),
+        source_(source),
         moving_(moving),
         state_(state),
         surroundings_(surroundings) {}
@@ -59,7 +59,8 @@ class MotionPoses final : public SkinPoseSource {
 
   SkinPose at(double time_s) override {
     poseJoints(time_s);
-    character_.flesh().pose(state_.posture, state_.skeleton, parameters(), state_.flesh.rigid());
+    character_.flesh().pose(state_.posture, state_.skeleton, state_.sampled.parameters,
+                            state_.flesh.rigid());
     if (character_.softFlesh()) showSoft(time_s);
     if (!surroundings_) return {&state_.flesh, state_.skeleton.joint_world};
     all_.clear();
@@ -69,16 +70,6 @@ class MotionPoses final : public SkinPoseSource {
   }
 
  private:
-  // Those of the motion, then those held from outside: the last one of a parameter counts.
-  std::span<const Flesh::ParameterOverride> parameters() {
-    if (state_.held.empty()) return state_.parameters;
-    state_.allParameters.assign(state_.parameters.begin(), state_.parameters.end());
-    state_.allParameters.insert(state_.allParameters.end(), state_.held.begin(), state_.held.end());
-    if (!moving_)
-      for (Flesh::ParameterOverride& p : state_.allParameters) p.rate = 0;
-    return state_.allParameters;
-  }
-
   void showSoft(double time_s) {
     character_.softFlesh()->prepare(state_.flesh);
     if (stepper_) {
@@ -94,24 +85,24 @@ class MotionPoses final : public SkinPoseSource {
   }
 
   void poseJoints(double time_s) {
-    const Skeleton& skeleton = character_.skeleton();
-    Posture& posture = state_.posture;
-    if (motion_ >= 0) {
-      const BoundClip& clip = character_.motion(static_cast<std::size_t>(motion_));
-      samplePosture(clip, skeleton, time_s, posture);
-      sampleParameters(clip, time_s, state_.parameters);
-    } else if (posture.values.size() != skeleton.valueCount()) {
-      posture = skeleton.restPosture();
-    }
-    if (!moving_) {
-      std::fill(posture.rates.begin(), posture.rates.end(), 0.0);
-      for (Flesh::ParameterOverride& p : state_.parameters) p.rate = 0;
-    }
-    skeleton.pose(posture, state_.skeleton);
+    PostureSample& sampled = state_.sampled;
+    source_.sample(time_s, sampled);
+    sampled.parameters.insert(sampled.parameters.end(), state_.held.begin(), state_.held.end());
+    admit(character_.skeleton(), character_.flesh(), state_.posture, sampled);
+    if (!moving_) still(sampled);
+    // The former posture's memory is the next sample's.
+    std::swap(state_.posture, sampled.posture);
+    character_.skeleton().pose(state_.posture, state_.skeleton);
+  }
+
+  static void still(PostureSample& sampled) {
+    std::ranges::fill(sampled.posture.rates, 0.0);
+    for (JointRotation& turn : sampled.posture.rotations) turn.angular_rad_per_s.setZero();
+    for (Flesh::ParameterOverride& p : sampled.parameters) p.rate = p.weightRate_per_s = 0;
   }
 
   const Character& character_;
-  int motion_;
+  const PostureSource& source_;
   bool moving_;
   CharacterState& state_;
   Surroundings* surroundings_;
@@ -146,6 +137,11 @@ int Character::findMotion(std::string_view name) const {
   return -1;
 }
 
+ClipSource Character::source(int motion) const {
+  static const BoundClip kRest;  // without tracks
+  return {skeleton(), motion < 0 ? kRest : this->motion(static_cast<std::size_t>(motion))};
+}
+
 std::uint64_t hashOf(const Character& character, const CharacterState& state) {
   StateHash hash;
   hash.add(state.time_s);
@@ -162,30 +158,31 @@ std::uint64_t hashOf(const Character& character, const CharacterState& state) {
   return hash.value();
 }
 
-void poseLayers(const Character& character, int motion, bool moving, CharacterState& state) {
-  MotionPoses(character, motion, moving, state).at(state.time_s);
+void poseLayers(const Character& character, const PostureSource& source, bool moving,
+                CharacterState& state) {
+  LayerPoses(character, source, moving, state).at(state.time_s);
   character.ornaments().pose(state.posture, state.skeleton, {}, state.ornaments);
 }
 
 namespace {
 
 // The soft solids hang as they would after any time, and move with their joints.
-void settleBodies(const Character& character, int motion, CharacterState& state) {
+void settleBodies(const Character& character, const PostureSource& source, CharacterState& state) {
   const SimulationDef& simulation = character.def().simulation;
   if (simulation.settle_s > 0)
     state.softWorkspace.stepper(character.softFlesh(), simulation.gravity_m_per_s2)
         .settle(state.skeleton, state.bodies);
-  poseLayers(character, motion, true, state);
+  poseLayers(character, source, true, state);
   character.softFlesh()->setRigidVelocities(state.skeleton, state.bodies);
-  poseLayers(character, motion, false, state);
+  poseLayers(character, source, false, state);
 }
 
 }  // namespace
 
-CharacterState initialState(const Character& character, int motion) {
+CharacterState initialState(const Character& character, const PostureSource& source) {
   CharacterState state;
-  poseLayers(character, motion, false, state);
-  if (character.softFlesh()) settleBodies(character, motion, state);
+  poseLayers(character, source, false, state);
+  if (character.softFlesh()) settleBodies(character, source, state);
   if (character.skin()) {
     const SkinPose pose{&state.flesh, state.skeleton.joint_world};
     placeSkin(*character.skin(), pose, state.skin);
@@ -200,16 +197,16 @@ CharacterState initialState(const Character& character, int motion) {
                   state.workspace, ignored);
     state.skin.starting = true;
   }
-  poseLayers(character, motion, true, state);
+  poseLayers(character, source, true, state);
   return state;
 }
 
-void advance(const Character& character, int motion, double dt_s, CharacterState& state,
-             SkinStats& stats, Surroundings* surroundings) {
+void advance(const Character& character, const PostureSource& source, double dt_s,
+             CharacterState& state, SkinStats& stats, Surroundings* surroundings) {
   requireFits(character, state);
   const double start = state.time_s;
   state.time_s = start + dt_s;
-  MotionPoses poses(character, motion, true, state, surroundings);
+  LayerPoses poses(character, source, true, state, surroundings);
   const int pieces = std::max(1, static_cast<int>(std::ceil(dt_s / kLongestPiece_s - 1e-6)));
   for (int i = 0; i < pieces; ++i) {
     const double from = start + dt_s * i / pieces;

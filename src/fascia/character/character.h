@@ -8,7 +8,7 @@
 
 #include <fascia/character/character_def.h>
 #include <fascia/character/soft_stepper.h>
-#include <fascia/motion/clip.h>
+#include <fascia/flesh/clip_source.h>
 #include <fascia/skin/skin.h>
 
 namespace fascia {
@@ -64,6 +64,9 @@ class Character {
   const BoundClip& motion(std::size_t i) const { return *parts_.clips[i]; }
   // Index of a motion by name; empty name = the first; -1 = none of that name.
   int findMotion(std::string_view name) const;
+  // Plays a motion; -1: the rest posture. A character with these parts must outlive it: one that
+  // was edited needs a source of its own.
+  ClipSource source(int motion) const;
 
  private:
   explicit Character(CharacterParts parts) : parts_(std::move(parts)) {}
@@ -81,25 +84,25 @@ struct CharacterState {
   PosedFlesh ornaments;
   SkinState skin;
   // Parameters of solids that are set from outside, in every frame anew if need be: they count more
-  // than the motion's and the drivers'. Of the flesh's own solids and parameters.
+  // than the source's and the drivers'. Those that the flesh lacks are ignored.
   std::vector<Flesh::ParameterOverride> held;
   // Scratch memory, not part of the state's meaning; a copy starts with none.
   SkinWorkspace workspace;
   SoftWorkspace softWorkspace;
-  std::vector<Flesh::ParameterOverride> parameters;     // of the motion
-  std::vector<Flesh::ParameterOverride> allParameters;  // and those held
-  std::vector<double> stillBodies;                      // velocities of none
+  PostureSample sampled;
+  std::vector<double> stillBodies;  // velocities of none
 };
 
 // Over time, posture, soft solids and skin: equal exactly when the states are.
 std::uint64_t hashOf(const Character& character, const CharacterState& state);
 
-// The state at time 0 of a motion (-1: the rest posture), settled for simulation.settle_s.
-CharacterState initialState(const Character& character, int motion);
+// The state at time 0 of what moves the character, settled for simulation.settle_s.
+CharacterState initialState(const Character& character, const PostureSource& source);
 
 // The layers below the skin at state.time_s; `moving` = false: velocities 0. Soft solids as
 // state.bodies has them if those are of this very time; otherwise undeformed, where joints are.
-void poseLayers(const Character& character, int motion, bool moving, CharacterState& state);
+void poseLayers(const Character& character, const PostureSource& source, bool moving,
+                CharacterState& state);
 
 // What stands or moves about a character, in its own space, while it is advanced: its skin must not
 // enter it. Skins whose points feel solids of their own only, those on rigs, do not feel it.
@@ -110,10 +113,11 @@ class Surroundings {
   virtual const Field& at(double time_s) = 0;
 };
 
-// One frame: motion → skeleton → flesh → soft solids → skin. dt_s > 0; long frames are divided.
-// Throws Error if the state is of another character (see requireFits in editing.h) and has then
-// changed nothing; else never. Allocates nothing after the first calls.
-void advance(const Character& character, int motion, double dt_s, CharacterState& state,
-             SkinStats& stats, Surroundings* surroundings = nullptr);
+// One frame: source → skeleton → flesh → soft solids → skin. dt_s > 0; long frames are divided.
+// The source is asked for times of this frame, in any order. Throws Error if the state is of
+// another character (see requireFits in editing.h) and has then changed nothing; else never.
+// Allocates nothing after the first calls.
+void advance(const Character& character, const PostureSource& source, double dt_s,
+             CharacterState& state, SkinStats& stats, Surroundings* surroundings = nullptr);
 
 }  // namespace fascia

@@ -12,6 +12,8 @@ namespace fascia {
 //   def.skin->tissue.stiffness_N_per_m3 = 9000;
 //   Character next = character.edited(def);
 //   state = carryOver(character, state, next);
+//
+// Sources of the former character are not those of the edited one: next.source(motion).
 
 // The state of a running character as one of the character that it was edited into. Points of the
 // skin keep their places and velocities; strands go on from where the edit puts their inner ends,
@@ -20,8 +22,7 @@ namespace fascia {
 // where the pose puts it. `state` must fit `from`.
 CharacterState carryOver(const Character& from, const CharacterState& state, const Character& to);
 
-// Throws Error if a state is not one of this character: other numbers of points, bodies or
-// parameters.
+// Throws Error if a state is not one of this character: other numbers of points or bodies.
 void requireFits(const Character& character, const CharacterState& state);
 
 // Renames a joint or a solid of the flesh wherever the definition refers to it. Throws Error if

@@ -5,13 +5,12 @@
 
 namespace fascia {
 
-Recording startRecording(const Character& character, int motion, double frame_rate_hz) {
+Recording startRecording(const PostureSource& source, double frame_rate_hz) {
   Recording out;
   out.frame_rate_hz = frame_rate_hz;
-  if (motion < 0) return out;
-  const BoundClip& clip = character.motion(static_cast<std::size_t>(motion));
-  out.motion = clip.name;
-  out.loop = clip.loop;
+  const PostureSource::Info info = source.info();
+  out.motion = info.name;
+  out.loop = info.loop;
   return out;
 }
 
@@ -35,24 +34,23 @@ void finishRecording(const Character& character, const CharacterState& last, Rec
   out.state_hash = hashOf(character, last);
 }
 
-Recording record(const Character& character, const RecordOptions& options) {
+Recording record(const Character& character, const PostureSource& source,
+                 const RecordOptions& options) {
   const double frameRate_hz =
       options.frame_rate_hz > 0 ? options.frame_rate_hz : character.def().simulation.frame_rate_hz;
-  Recording out = startRecording(character, options.motion, frameRate_hz);
-  double duration = options.duration_s;
-  if (options.motion >= 0 && duration <= 0)
-    duration = character.motion(static_cast<std::size_t>(options.motion)).duration_s;
+  Recording out = startRecording(source, frameRate_hz);
+  const double duration = options.duration_s > 0 ? options.duration_s : source.info().duration_s;
   const double dt = 1 / frameRate_hz;
   const auto frames = static_cast<std::int64_t>(std::llround(duration * frameRate_hz));
 
-  CharacterState state = initialState(character, options.motion);
+  CharacterState state = initialState(character, source);
   const auto keep = [&] {
     keepFrame(character, state, state.time_s + 0.5 * dt >= options.start_s, out);
   };
   keep();
   for (std::int64_t i = 0; i < frames; ++i) {
     const auto begin = std::chrono::steady_clock::now();
-    advance(character, options.motion, dt, state, out.stats);
+    advance(character, source, dt, state, out.stats);
     out.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     out.simulated_s += dt;
     keep();

@@ -16,7 +16,7 @@ struct Recording {
     std::vector<Eigen::Vector3f> skin_m;  // vertices in skinSurface order; may be empty
     std::vector<double> soft_shapes;      // SoftFlesh::shapes; empty without soft solids
   };
-  std::string motion;  // its name; empty = the rest posture
+  std::string motion;  // PostureSource::Info::name; empty = none of the character's
   double frame_rate_hz = 60;
   bool loop = false;
   TriangleMesh skin;  // topology and uvs; positions = the first frame's
@@ -26,23 +26,23 @@ struct Recording {
   std::uint64_t state_hash = 0;  // of the last CharacterState
 };
 
-// The parts of recording a run that somebody else takes through time: a recording of a motion (-1:
-// the rest posture) without frames; the state as its next frame, measured (and kept unless `kept`
-// is false); what is known at the end.
-Recording startRecording(const Character& character, int motion, double frame_rate_hz);
+// The parts of recording a run that somebody else takes through time: a recording of what moves the
+// character, without frames; the state as its next frame, measured (and kept unless `kept` is
+// false); what is known at the end.
+Recording startRecording(const PostureSource& source, double frame_rate_hz);
 void keepFrame(const Character& character, const CharacterState& state, bool kept, Recording& out);
 void finishRecording(const Character& character, const CharacterState& last, Recording& out);
 
 struct RecordOptions {
-  int motion = -1;           // index; -1 = the rest posture
   double frame_rate_hz = 0;  // 0 = as in the file
-  double duration_s = 0;     // 0 = the motion's
+  double duration_s = 0;     // 0 = the source's
   double start_s = 0;        // frames before this are simulated, but not kept
   // Called after every frame with the fraction done; false stops (recording is then discarded).
   std::function<bool(double)> progress;
 };
 
 // Throws Error("stopped") when progress asked to stop.
-Recording record(const Character& character, const RecordOptions& options);
+Recording record(const Character& character, const PostureSource& source,
+                 const RecordOptions& options = {});
 
 }  // namespace fascia

@@ -180,6 +180,7 @@ void samplePosture(const BoundClip& clip, const Skeleton& skeleton, double time_
                    Posture& posture) {
   posture.values.resize(skeleton.valueCount());
   posture.rates.assign(skeleton.valueCount(), 0.0);
+  posture.rotations.clear();
   for (std::size_t i = 0; i < posture.values.size(); ++i) {
     posture.values[i] = skeleton.valueDof(static_cast<int>(i)).rest;
   }

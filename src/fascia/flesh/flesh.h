@@ -143,12 +143,13 @@ class Flesh {
   const Transform& placeInJoint(SolidId id) const { return solids_[id.index()].inJoint; }
   const Solid& restSolid(SolidId id) const;
 
-  // An animated parameter: replaces the rest value and whatever a driver says; the last one of a
-  // parameter counts.
+  // An animated parameter: replaces the rest value and whatever a driver says, or what an override
+  // before it says, by its weight.
   struct ParameterOverride {
     SolidId solid;
     int parameter;
-    double value, rate;  // its unit, and per second
+    double value, rate;                       // its unit, and per second
+    double weight = 1, weightRate_per_s = 0;  // [0, 1]; 0 = as if it were not there
   };
   // Depends on its arguments only, not on what `out` held. Allocation-free after the first call
   // with the same `out`.

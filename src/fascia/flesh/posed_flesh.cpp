@@ -212,7 +212,14 @@ void Flesh::pose(const Posture& posture, const PosedSkeleton& skeleton,
     }
   }
   for (const ParameterOverride& o : overrides) {
-    PosedFlesh::write(out.posed_[o.solid.index()], o.parameter, o.value, o.rate);
+    PosedFlesh::Posed& posed = out.posed_[o.solid.index()];
+    if (o.weight == 1 && o.weightRate_per_s == 0) {
+      PosedFlesh::write(posed, o.parameter, o.value, o.rate);
+      continue;
+    }
+    const auto [value, rate] = posed.parameters[static_cast<std::size_t>(o.parameter)];
+    PosedFlesh::write(posed, o.parameter, value + o.weight * (o.value - value),
+                      rate + o.weight * (o.rate - rate) + o.weightRate_per_s * (o.value - value));
   }
   for (PosedFlesh::Posed& posed : out.posed_) PosedFlesh::finish(posed);
 }

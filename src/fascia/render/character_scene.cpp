@@ -11,10 +11,10 @@
 namespace fascia {
 namespace {
 
-constexpr float kSkinScatter = 0.045f;          // of the height: light inside skin; larger: wax
-constexpr float kVeilOpacity = 0.24f;           // of skin that shows the layers below
-constexpr std::size_t kSkinTriangles = 10'000;  // fewer: corners show in the outline
-constexpr float kTendonAspect = 1.25f;          // rounder solids are drawn without tendons
+constexpr float kSkinScatter = 0.045f;         // of the height: light inside skin; larger: wax
+constexpr float kVeilOpacity = 0.24f;          // of skin that shows the layers below
+constexpr std::size_t kSkinTriangles = 5'000;  // fewer: corners show in the outline
+constexpr float kTendonAspect = 1.25f;         // rounder solids are drawn without tendons
 
 bool hasRig(const Character& character) {
   return character.def().rig && character.def().rig->model;
@@ -101,7 +101,7 @@ void addMuscles(const Character& character, const CharacterState& state,
     const SolidId id(static_cast<std::int64_t>(i));
     Drawable muscle;
     // Fibres run through the undeformed matter and bend with it.
-    muscle.mesh = state.flesh.rigid().solid(id).tessellate(options.solid_detail);
+    muscle.mesh = state.flesh.rigid().solid(id).tessellate(options.muscle_detail);
     muscle.fibre_coordinates = fibreCoordinates(muscle.mesh);
     const SolidId soft = state.flesh.softOf(id);
     if (soft.valid())
@@ -131,7 +131,7 @@ void addOrnaments(const Character& character, const CharacterState& state,
     const SolidId id(static_cast<std::int64_t>(i));
     const FleshSolidDef& def = character.ornaments().def(id);
     Drawable ornament;
-    ornament.mesh = state.ornaments.solid(id).tessellate(options.solid_detail);
+    ornament.mesh = state.ornaments.solid(id).tessellate(options.ornament_detail);
     ornament.world = state.ornaments.frame(id);
     ornament.material.color = rgb(def.color);
     ornament.material.roughness = ornamentRoughness(def);

@@ -26,7 +26,8 @@ struct SceneOptions {
   Box framing;  // what the camera frames, e.g. over a whole motion; empty = this frame
   const Reach* reach = nullptr;  // instead of `framing`, more tightly; must outlive the call
   double aspect = 16.0 / 9;
-  int solid_detail = 40;  // segments around a muscle or ornament
+  int ornament_detail = 24;  // segments around; more do not show
+  int muscle_detail = 40;    // … of muscles, whose fibres follow the facets
 };
 
 // The picture of a character at one moment. `skin` is its surface in that state (skinSurface, or a

@@ -1,6 +1,8 @@
 #include <fascia/render/renderer.h>
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 #include <vector>
 
 #include <fascia/base/error.h>
@@ -10,6 +12,9 @@
 
 namespace fascia {
 namespace {
+
+constexpr int kShadowSide = 2048;  // texels; smaller: stairs in the shadows of thin limbs
+constexpr int kFastShadowSide = 1024;
 
 void requireDrawable(const Scene& scene, int width, int height) {
   const bool sized = width >= 1 && height >= 1 && width <= Renderer::kMaxSide &&
@@ -36,11 +41,15 @@ void requireDrawable(const Scene& scene, int width, int height) {
 struct Renderer::Impl {
   GlContext context;  // first: everything below needs it until it is gone
   gl::ShadowPass shadow;
-  gl::OcclusionPass occlusion;
+  std::optional<gl::OcclusionPass> occlusion;  // none in the fast look
   gl::BeautyPass beauty;
   gl::TextureCache textures;
   std::vector<std::unique_ptr<gl::GpuMesh>> meshes;  // by place in the scene
 
+  explicit Impl(Look look)
+      : shadow(look == Look::fast ? kFastShadowSide : kShadowSide), beauty(look) {
+    if (look == Look::full) occlusion.emplace();
+  }
   ~Impl() { context.makeCurrent(); }
 
   void uploadItems(const Scene& scene, gl::Frame& frame) {
@@ -53,14 +62,30 @@ struct Renderer::Impl {
       Eigen::Matrix4f world = Eigen::Matrix4f::Identity();
       world.block<3, 3>(0, 0) = drawable.world.rotation.cast<float>();
       world.block<3, 1>(0, 3) = drawable.world.translation_m.cast<float>();
-      frame.items.push_back(
-          {&drawable, meshes[i].get(), textures.find(drawable.material.texture), world});
+      const bool ground = drawable.material.kind == Material::Kind::ground;
+      frame.items.push_back({&drawable, meshes[i].get(), textures.find(drawable.material.texture),
+                             world, ground || (frame.seenFromOutside && meshes[i]->closed())});
     }
     textures.dropUnused();
   }
+
+  // `run` runs a pass, and may note its time.
+  template <class Run>
+  PassTimes render(const Scene& scene, int width, int height, Pixels& pixels, const Run& run) {
+    requireDrawable(scene, width, height);
+    context.makeCurrent();
+    gl::Frame frame = gl::prepareFrame(scene, width, height);
+    PassTimes times;
+    run(times.upload_s, [&] { uploadItems(scene, frame); });
+    run(times.shadow_s, [&] { shadow.draw(frame); });
+    if (occlusion) run(times.occlusion_s, [&] { occlusion->draw(frame, shadow); });
+    run(times.beauty_s, [&] { beauty.draw(frame, {shadow, occlusion ? &*occlusion : nullptr}); });
+    run(times.read_s, [&] { beauty.read(pixels); });
+    return times;
+  }
 };
 
-Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
+Renderer::Renderer(Look look) : impl_(std::make_unique<Impl>(look)) {}
 Renderer::~Renderer() = default;
 
 Pixels Renderer::render(const Scene& scene, int width, int height) {
@@ -70,14 +95,18 @@ Pixels Renderer::render(const Scene& scene, int width, int height) {
 }
 
 void Renderer::render(const Scene& scene, int width, int height, Pixels& pixels) {
-  requireDrawable(scene, width, height);
-  impl_->context.makeCurrent();
-  gl::Frame frame = gl::prepareFrame(scene, width, height);
-  impl_->uploadItems(scene, frame);
-  impl_->shadow.draw(frame);
-  impl_->occlusion.draw(frame, impl_->shadow);
-  impl_->beauty.draw(frame, impl_->occlusion);
-  impl_->beauty.read(pixels);
+  impl_->render(scene, width, height, pixels, [](double&, const auto& pass) { pass(); });
+}
+
+Renderer::PassTimes Renderer::renderMeasured(const Scene& scene, int width, int height,
+                                             Pixels& pixels) {
+  using Clock = std::chrono::steady_clock;
+  return impl_->render(scene, width, height, pixels, [](double& time_s, const auto& pass) {
+    const Clock::time_point begin = Clock::now();
+    pass();
+    glFinish();
+    time_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  });
 }
 
 std::string Renderer::description() const {

@@ -97,6 +97,7 @@ Skeleton::Local Skeleton::local(std::size_t joint, const Posture& posture) const
 void Skeleton::pose(const Posture& posture, PosedSkeleton& out) const {
   out.joint_world.resize(joints_.size());
   out.twist_world.resize(joints_.size());
+  auto turn = posture.rotations.begin();
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     Transform base = restFrames_[i];  // where the joint would be at zero
     Twist carried;                    // what the parent's motion does to it
@@ -106,8 +107,13 @@ void Skeleton::pose(const Posture& posture, PosedSkeleton& out) const {
     }
     const Local own = local(i, posture);
     const Vec3 origin_m = base.point(own.position_m);
-    const Vec3 spin_rad_per_s = angularVelocityZyx(own.angles_rad, own.angleRates_rad_per_s);
-    out.joint_world[i] = {base.rotation * rotationZyx(own.angles_rad), origin_m};
+    const bool turned = turn != posture.rotations.end() && turn->joint.index() == i;
+    const Mat3 rotation = turned ? turn->rotation.toRotationMatrix() : rotationZyx(own.angles_rad);
+    const Vec3 spin_rad_per_s = turned
+                                    ? turn->angular_rad_per_s
+                                    : angularVelocityZyx(own.angles_rad, own.angleRates_rad_per_s);
+    if (turned) ++turn;
+    out.joint_world[i] = {base.rotation * rotation, origin_m};
     out.twist_world[i] = {carried.at(origin_m) + base.vector(own.linear_m_per_s),
                           carried.angular_rad_per_s + base.vector(spin_rad_per_s), origin_m};
   }

@@ -42,10 +42,20 @@ struct SkeletonDef {
   bool operator==(const SkeletonDef&) const = default;
 };
 
+// A joint's own turn as a rotation, where three angles would lose a direction (gimbal lock).
+struct JointRotation {
+  JointId joint;
+  Quat rotation;           // unit; from the joint's frame at zero angles
+  Vec3 angular_rad_per_s;  // in that frame
+};
+
 // The values of every degree of freedom, and their rates: one entry per Skeleton value.
 struct Posture {
   std::vector<double> values;  // metre or radian
   std::vector<double> rates;   // per second
+  // By joint, one each at most, of joints that have rx, ry and rz: they count instead of the
+  // joint's angles, which say the same as well as angles can.
+  std::vector<JointRotation> rotations{};
 };
 
 // World frames and velocities of every joint.
@@ -72,16 +82,24 @@ class Skeleton {
   JointId valueJoint(int index) const { return valueJoints_[static_cast<std::size_t>(index)]; }
 
   Posture restPosture() const;
+  // Sets the angles of joints that have rotations: of all triples that turn alike, one close to
+  // that in `near` (the values of a former posture; empty: of rest), so that angles go on where
+  // they were, and within limits if one is. Of joints that lack angles or whose limits forbid the
+  // rotation only the angles are left. Sorts the rotations, and drops those that are none.
+  void resolveRotations(std::span<const double> near, Posture& posture) const;
   // A clamped value's rate becomes 0; a value that is not a number goes to rest.
   void clampToLimits(Posture& posture) const;
 
-  // Forward kinematics with velocities. `posture` has valueCount() values and rates.
+  // Forward kinematics with velocities. `posture` has valueCount() values and rates, and rotations
+  // as resolveRotations() leaves them.
   // `out` is resized on first use, then reused.
   void pose(const Posture& posture, PosedSkeleton& out) const;
 
  private:
-  struct Local;  // a joint's frame and velocity in its rest frame
+  struct Local;  // a joint's shift and angles, and their rates
   Local local(std::size_t joint, const Posture& posture) const;
+  bool resolveRotation(const JointRotation& turn, std::span<const double> near,
+                       Posture& posture) const;
 
   std::vector<JointDef> joints_;
   std::vector<JointId> parents_;

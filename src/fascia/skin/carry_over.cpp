@@ -1,5 +1,7 @@
 #include <fascia/skin/carry_over.h>
 
+#include <utility>
+
 #include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/grid/resample.h>
 
@@ -35,18 +37,6 @@ SkinState onOtherGrid(const Skin& from, const SkinState& state, const Skin& to) 
   return out;
 }
 
-// The grid that a fine one rides on, if it has one.
-void carryOverCoarse(const Skin& from, const SkinState& state, const Skin& to, const SkinPose& pose,
-                     SkinState& out) {
-  out.coarse.clear();
-  if (!to.coarse()) return;
-  const bool had = from.coarse() && !state.coarse.empty();
-  out.coarse.push_back(had ? carryOver(*from.coarse(), state.coarse.front(), *to.coarse(), pose)
-                           : carryOver(from, state, *to.coarse(), pose));
-  // A fine point goes with the coarse surface beneath it already.
-  if (!had || out.coarseVelocity.size() != out.velocity.size()) out.coarseVelocity = out.velocity;
-}
-
 SkinState placedAnew(const Skin& skin, const SkinPose& pose) {
   SkinState out;
   placeSkin(skin, pose, out);
@@ -56,18 +46,26 @@ SkinState placedAnew(const Skin& skin, const SkinPose& pose) {
 
 }  // namespace
 
-SkinState carryOver(const Skin& from, const SkinState& state, const Skin& to,
-                    const SkinPose& pose) {
+SkinState carryOver(const Skin& from, SkinState state, const Skin& to, const SkinPose& pose) {
   if (from.id() == to.id()) return state;
   const bool same = samePoints(from, to);
   if (!same && !(from.grid() && to.grid())) return placedAnew(to, pose);
-  SkinState out = same ? state : onOtherGrid(from, state, to);
+  SkinState coarser;  // of the grid that a fine one rides on
+  const bool rode = from.coarse() && !state.coarse.empty();
+  if (state.ready && to.coarse())
+    coarser = rode ? carryOver(*from.coarse(), std::move(state.coarse.front()), *to.coarse(), pose)
+                   : carryOver(from, state, *to.coarse(), pose);
+  SkinState out = same ? std::move(state) : onOtherGrid(from, state, to);
   // The edit is no motion: neither joints nor anchors have a velocity from it.
   if (!out.joints.empty()) out.joints.assign(pose.joints.begin(), pose.joints.end());
   if (from.rigged() != to.rigged()) out.jiggle.frames = 0;
+  out.coarse.clear();
   if (!out.ready) return out;
   to.attachment().makePlacer()->placeAnchors(pose, out.surroundings.anchor);
-  carryOverCoarse(from, state, to, pose, out);
+  if (!to.coarse()) return out;
+  out.coarse.push_back(std::move(coarser));
+  // A fine point goes with the coarse surface beneath it already.
+  if (!rode || out.coarseVelocity.size() != out.velocity.size()) out.coarseVelocity = out.velocity;
   return out;
 }
 

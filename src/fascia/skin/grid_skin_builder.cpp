@@ -233,6 +233,9 @@ void GridSkinBuilder::placePoints(GridWrap& wrap) const {
       wrap.placements[p] = {k, solids[p], material};
     }
   });
+  wrap.placed = VectorArray(layout_.storage());
+  VectorArray scratch;
+  TissueAnchors(wrap.placements).place(wrap.posedFlesh, scratch, wrap.placed);
 }
 
 // The strands of all inner points, row by row.

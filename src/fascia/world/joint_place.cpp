@@ -8,8 +8,8 @@ constexpr double kMoment_s = 1e-3;  // between the velocities that give an accel
 // Poses a character for one joint's sake, and remembers the last time it was asked for.
 class JointPlace {
  public:
-  JointPlace(const SceneCharacterDef& def, int motion, JointId joint)
-      : character_(def.character), place_(placeOf(def)), motion_(motion), joint_(joint) {}
+  JointPlace(const SceneCharacterDef& def, const PostureSource& source, JointId joint)
+      : character_(def.character), place_(placeOf(def)), source_(source), joint_(joint) {}
 
   const PathPoint& at(double time_s) {
     if (time_s == known_s_) return point_;
@@ -24,14 +24,14 @@ class JointPlace {
  private:
   Vec3 velocity(double time_s) {
     state_.time_s = time_s;
-    poseLayers(*character_, motion_, true, state_);
+    poseLayers(*character_, source_, true, state_);
     const Twist& twist = state_.skeleton.twist_world[joint_.index()];
     return place_.vector(twist.linear_m_per_s);
   }
 
   std::shared_ptr<const Character> character_;
   Transform place_;
-  int motion_;
+  const PostureSource& source_;
   JointId joint_;
   CharacterState state_;
   double known_s_ = -1e300;
@@ -40,8 +40,9 @@ class JointPlace {
 
 }  // namespace
 
-PointPath jointPlace(const SceneCharacterDef& character, int motion, JointId joint) {
-  const auto place = std::make_shared<JointPlace>(character, motion, joint);
+PointPath jointPlace(const SceneCharacterDef& character, const PostureSource& source,
+                     JointId joint) {
+  const auto place = std::make_shared<JointPlace>(character, source, joint);
   return [place](double time_s) { return place->at(time_s); };
 }
 

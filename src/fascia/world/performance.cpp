@@ -37,8 +37,25 @@ KeyframedPath pathOf(const ScenePathDef& def) {
 
 // A character among the bodies.
 struct Performance::Actor {
+  // What moves it, whatever that is just now.
+  struct Role final : PostureSource {
+    explicit Role(const ClipSource& motion) : own(motion) {}
+    void sample(double time_s, PostureSample& out) const override { now().sample(time_s, out); }
+    Info info() const override { return now().info(); }
+    const PostureSource& now() const { return given ? *given : own; }
+
+    ClipSource own;                        // as the scene says
+    const PostureSource* given = nullptr;  // nullptr: none
+  };
+
+  explicit Actor(const SceneCharacterDef& scene)
+      : def(&scene),
+        role(scene.character->source(scene.character->findMotion(scene.motion))),
+        state(initialState(*scene.character, role)),
+        ahead(state) {}
+
   const SceneCharacterDef* def;
-  int motion;
+  Role role;
   CharacterState state;
   CharacterState ahead;  // its flesh as bodies meet it, step by step
   std::unique_ptr<PlacedField> field;
@@ -64,13 +81,7 @@ Performance::Performance(const Stage& stage, std::uint64_t seed)
 Performance::~Performance() = default;
 
 void Performance::addActor(const SceneCharacterDef& def) {
-  const Character& character = *def.character;
-  const int motion = character.findMotion(def.motion);
-  auto actor = std::make_unique<Actor>();
-  actor->def = &def;
-  actor->motion = motion;
-  actor->state = initialState(character, motion);
-  actor->ahead = actor->state;
+  auto actor = std::make_unique<Actor>(def);
   actor->field = std::make_unique<PlacedField>(actor->ahead.flesh, placeOf(def));
   actor->surroundings = std::make_unique<StageSurroundings>(stage_, placeOf(def));
   actors_.push_back(std::move(actor));
@@ -114,7 +125,7 @@ void Performance::addPuppet() {
     for (std::size_t j = 0; j < skeleton.jointCount(); ++j) {
       const JointId joint(j);
       points.push_back({actor->def->name + "." + skeleton.joint(joint).name,
-                        jointPlace(*actor->def, actor->motion, joint)});
+                        jointPlace(*actor->def, actor->role, joint)});
     }
   }
   puppet_ = std::make_unique<Puppet>(system_, state_, std::move(points));
@@ -140,7 +151,7 @@ void Performance::advance(double dt_s) {
   }
   for (const auto& actor : actors_) {
     actor->surroundings->setFrame(before_, state_);
-    fascia::advance(*actor->def->character, actor->motion, dt_s, actor->state, actor->stats,
+    fascia::advance(*actor->def->character, actor->role, dt_s, actor->state, actor->stats,
                     actor->surroundings.get());
   }
 }
@@ -150,9 +161,17 @@ void Performance::step(double h_s) {
   puppet_->update(h_s);
   for (const auto& actor : actors_) {
     actor->ahead.time_s = state_.t_s + h_s;
-    poseLayers(*actor->def->character, actor->motion, true, actor->ahead);
+    poseLayers(*actor->def->character, actor->role, true, actor->ahead);
   }
   stepper_->step(h_s, state_);
+}
+
+void Performance::setSource(std::size_t i, const PostureSource* source) {
+  actors_[i]->role.given = source;
+}
+
+const PostureSource& Performance::source(std::size_t i) const {
+  return actors_[i]->role.now();
 }
 
 const CharacterState& Performance::character(std::size_t i) const {

@@ -32,6 +32,10 @@ class Performance {
   const OdeState& bodies() const { return state_; }
   std::size_t characterCount() const { return actors_.size(); }
   const CharacterState& character(std::size_t i) const;
+  // What moves a character from the next frame on, made for it and outliving the performance;
+  // nullptr: the scene's motion again, which is also what it starts with.
+  void setSource(std::size_t i, const PostureSource* source);
+  const PostureSource& source(std::size_t i) const;
   const SkinStats& skinStats(std::size_t i) const;
   const BodyStepperStats& bodyStats() const { return stepper_->stats(); }
   // Strings to pull while it runs, by a hand or a program (spec W11).

@@ -14,9 +14,8 @@ StageRecording record(const Stage& stage, const StageRecordOptions& options) {
   const auto frames = static_cast<std::int64_t>(std::llround(duration_s * out.frame_rate_hz));
 
   Performance performance(stage, options.seed);
-  for (const SceneCharacterDef& def : stage.def().characters)
-    out.characters.push_back(
-        startRecording(*def.character, def.character->findMotion(def.motion), out.frame_rate_hz));
+  for (std::size_t i = 0; i < performance.characterCount(); ++i)
+    out.characters.push_back(startRecording(performance.source(i), out.frame_rate_hz));
   const auto keep = [&] {
     const bool kept = performance.time_s() + 0.5 * dt_s >= options.start_s;
     if (kept) out.frames.push_back({performance.time_s(), performance.bodies().r});

@@ -34,7 +34,7 @@ fascia::CharacterDef ball() {
 int main(int argc, char** argv) {
   try {
     const fascia::Character character(ball());
-    const fascia::Recording recording = fascia::record(character, {.motion = 0});
+    const fascia::Recording recording = fascia::record(character, character.source(0));
     std::printf("%zu frames\n", recording.frames.size());
     fascia::writeGlb(character, recording, argc > 1 ? argv[1] : "ball.glb");
     return 0;

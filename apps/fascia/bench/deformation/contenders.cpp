@@ -88,7 +88,7 @@ class FasciaContender : public Contender {
     const std::size_t rigMotion = static_cast<std::size_t>(stage.motion);
     const int motion = chooseMotion(character_, model_->motions[rigMotion].name);
     ContestFrames performance;
-    CharacterState state = initialState(character_, motion);
+    CharacterState state = initialState(character_, character_.source(motion));
     SkinStats stats;
     Stopwatch watch;
     TriangleMesh surface;
@@ -96,7 +96,7 @@ class FasciaContender : public Contender {
     for (std::size_t f = 0; f < stage.motions.size(); ++f) {
       if (f > 0) {
         watch.start();
-        advance(character_, motion, 1 / kContestRate_hz, state, stats);
+        advance(character_, character_.source(motion), 1 / kContestRate_hz, state, stats);
         watch.stop();
       }
       showCharacter(character_, state, surface);

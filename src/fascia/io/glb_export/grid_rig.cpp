@@ -94,7 +94,7 @@ GridRig gridRigOf(const Character& character) {
   if (!character.skin() || !character.skin()->grid())
     throw Error("the character has no skin on a grid");
   if (character.skeleton().jointCount() > 0xffff) throw Error("there are too many joints");
-  const CharacterState rest = initialState(character, -1);
+  const CharacterState rest = initialState(character, character.source(-1));
   GridRig rig;
   rig.rest_world = rest.skeleton.joint_world;
   skinSurface(*character.skin(), rest.skin, rig.surface);

@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include <png.h>
+#include <zlib.h>
 
 #include <fascia/base/error.h>
 #include <fascia/io/file/file.h>
@@ -47,6 +48,58 @@ Image decodePng(std::string_view bytes, const std::string& file) {
   return image;
 }
 
+// Drawn pictures are: a quarter less to pack.
+bool opaque(const Image& image) {
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+    if (image.rgba[i] != 255) return false;
+  return true;
+}
+
+void putBigEndian(std::uint32_t value, std::string& out) {
+  for (const int shift : {24, 16, 8, 0}) out += static_cast<char>(value >> shift & 0xff);
+}
+
+void putChunk(std::string_view kind, std::string_view data, std::string& out) {
+  putBigEndian(static_cast<std::uint32_t>(data.size()), out);
+  const std::size_t begin = out.size();
+  out += kind;
+  out += data;
+  const auto* bytes = reinterpret_cast<const Bytef*>(out.data() + begin);
+  putBigEndian(static_cast<std::uint32_t>(crc32_z(0, bytes, out.size() - begin)), out);
+}
+
+// Each row: the filter's number, then differences to the pixel on the left (filter 1, "Sub").
+// Choosing among all filters for each row takes six times as long and gives larger files of drawn
+// pictures, whose gradients are dithered.
+std::string filteredRows(const Image& image, std::size_t channels) {
+  const auto width = static_cast<std::size_t>(image.width);
+  const auto height = static_cast<std::size_t>(image.height);
+  std::string rows;
+  rows.reserve(height * (1 + channels * width));
+  for (std::size_t y = 0; y < height; ++y) {
+    rows += '\1';
+    const std::uint8_t* row = image.rgba.data() + 4 * width * y;
+    for (std::size_t x = 0; x < width; ++x)
+      for (std::size_t c = 0; c < channels; ++c) {
+        const int left = x > 0 ? row[4 * (x - 1) + c] : 0;
+        rows += static_cast<char>(row[4 * x + c] - left);
+      }
+  }
+  return rows;
+}
+
+std::string deflated(const std::string& bytes) {
+  constexpr int kLevel = 3;  // 6 takes twice as long and saves a few per cent
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string out(size, '\0');
+  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()),
+                               static_cast<uLong>(bytes.size()), kLevel);
+  if (status != Z_OK) throw Error("the PNG cannot be encoded: no memory");
+  out.resize(size);
+  return out;
+}
+
 }  // namespace
 
 bool isPicture(const std::vector<std::uint8_t>& bytes) {
@@ -68,18 +121,15 @@ std::string encodePng(const Image& image) {
   if (image.width <= 0 || image.height <= 0 || image.rgba.size() != 4 * pixels) {
     throw Error("an image without its pixels cannot be written");
   }
-  png_image writer;
-  std::memset(&writer, 0, sizeof writer);
-  writer.version = PNG_IMAGE_VERSION;
-  writer.width = static_cast<png_uint_32>(image.width);
-  writer.height = static_cast<png_uint_32>(image.height);
-  writer.format = PNG_FORMAT_RGBA;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(writer);
-  std::string out(size, '\0');
-  if (!png_image_write_to_memory(&writer, out.data(), &size, 0, image.rgba.data(), 0, nullptr)) {
-    throw Error(std::string("the PNG cannot be encoded: ") + writer.message);
-  }
-  out.resize(size);
+  const bool alpha = !opaque(image);
+  std::string out("\x89PNG\r\n\x1a\n", 8);
+  std::string header;
+  putBigEndian(static_cast<std::uint32_t>(image.width), header);
+  putBigEndian(static_cast<std::uint32_t>(image.height), header);
+  header += {8, static_cast<char>(alpha ? 6 : 2), 0, 0, 0};  // bits; RGBA or RGB; not interlaced
+  putChunk("IHDR", header, out);
+  putChunk("IDAT", deflated(filteredRows(image, alpha ? 4 : 3)), out);
+  putChunk("IEND", {}, out);
   return out;
 }
 

@@ -61,12 +61,10 @@ class VideoWriter::Encoder final : public Sink {
 
   // H.264 with 4:2:0 colour needs even sizes.
   static std::vector<std::string> mp4Arguments(int crf) {
-    return {"-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-            "-c:v",      "libx264",
-            "-pix_fmt",  "yuv420p",
-            "-crf",      std::to_string(crf),
-            "-movflags", "+faststart",
-            "-f",        "mp4"};
+    return {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264",
+            // A third of the default's time for files of the same size.
+            "-preset", "veryfast", "-pix_fmt", "yuv420p", "-crf", std::to_string(crf), "-movflags",
+            "+faststart", "-f", "mp4"};
   }
   // One palette for the whole film, made of all of its colours. Ordered dithering keeps still what
   // stands still, and so the file small.

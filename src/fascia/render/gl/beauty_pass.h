@@ -1,38 +1,36 @@
 #pragma once
 
-#include <array>
 #include <initializer_list>
-#include <memory>
 
-#include <fascia/render/gl/frame.h>
-#include <fascia/render/gl/occlusion_pass.h>
+#include <fascia/render/gl/backdrop_pass.h>
 
 namespace fascia::gl {
 
-// The lit, anti-aliased picture.
+// The lit, anti-aliased picture: what stands in the studio is drawn on its own, with several
+// samples per pixel, in the part of the picture that it covers, and laid over the backdrop.
 class BeautyPass {
  public:
-  BeautyPass();
-  void draw(const Frame& frame, const OcclusionPass& occlusion);
+  explicit BeautyPass(Look look);
+  void draw(const Frame& frame, const LightPasses& light);
   void read(Pixels& pixels) const;  // what draw() drew last
 
  private:
   void resize(int width, int height);
-  void drawBackground(const Frame& frame);
-  void drawOpaque(const Frame& frame, const OcclusionPass& occlusion,
+  void drawSubject(const Frame& frame, const LightPasses& light);
+  void drawOpaque(const Frame& frame, const LightPasses& light,
                   std::initializer_list<Material::Kind> kinds);
-  void drawSeeThrough(const Frame& frame, const OcclusionPass& occlusion, Material::Kind kind);
-  void drawHidden(const Frame& frame, const OcclusionPass& occlusion);
+  void drawSeeThrough(const Frame& frame, const LightPasses& light, Material::Kind kind);
+  void drawHidden(const Frame& frame, const LightPasses& light);
   void drawDepth(const Frame& frame, Material::Kind kind);
-  void drawLit(const Frame& frame, const OcclusionPass& occlusion, const DrawItem& item,
-               bool hidden = false);
-  Program& litProgram(Material::Kind kind);
+  void cutGround(const Frame& frame);
+  void layOverBackdrop();
 
-  Program backgroundProgram_, depthProgram_;
-  std::array<std::unique_ptr<Program>, 5> litPrograms_;  // by kind, made when first needed
+  LitPrograms lit_;
+  BackdropPass backdrop_;
+  Program depthProgram_, layerProgram_;
   VertexArray noArrays_;
-  Texture scatterLookup_, noise_;
-  Renderbuffer color_, depth_, resolvedColor_;
+  Texture resolvedColor_;
+  Renderbuffer color_, depth_;
   Framebuffer target_, resolved_;
   int width_ = 0, height_ = 0;
 };

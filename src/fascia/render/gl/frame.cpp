@@ -22,7 +22,50 @@ float largestScatter(const Scene& scene) {
   return scatter_m;
 }
 
+// The box of what is near enough to the ground to darken it, and of its shadow on the ground.
+std::vector<Vec3> darkenedBy(const Frame& frame, double height_m) {
+  const double radius_m = static_cast<double>(frame.subjectRadius_m);
+  const double near_m = kOcclusionRadius * radius_m;
+  const double spread = std::tan(frame.scene->studio.key_radius_rad);
+  const Vec3 light = frame.keyDirection.cast<double>();
+  std::vector<Vec3> points;
+  for (const Vec3& corner : cornersOf(frame.subject)) {
+    const double along_m = std::max(corner.y() - height_m, 0.0) / light.y();
+    const Vec3 foot = corner - along_m * light;
+    // The penumbra widens with the way, and is stretched where the light is low.
+    const double soft_m = (spread * along_m + 0.15 * radius_m) / light.y();
+    for (const auto& [center, reach_m] : {std::pair(corner, near_m), std::pair(foot, soft_m)})
+      for (const Vec3& p :
+           cornersOf({center - Vec3(reach_m, 0, reach_m), center + Vec3(reach_m, 0, reach_m)}))
+        points.emplace_back(p.x(), height_m, p.z());
+    points.push_back(corner);
+  }
+  return points;
+}
+
+ScreenBox shadowedFloor(const Frame& frame) {
+  const ScreenBox whole(Eigen::Vector2f::Zero(), Eigen::Vector2f::Ones());
+  constexpr float kLow = 0.2f;  // of the light above the horizon: shadows as long as the floor
+  if (frame.keyDirection.y() < kLow) return whole;
+  ScreenBox box;
+  for (const Drawable& drawable : frame.scene->drawables) {
+    if (drawable.material.kind != Material::Kind::ground) continue;
+    const Box ground = worldBounds(drawable);
+    const bool flat = ground.empty() || ground.size().y() < 1e-6 * ground.size().norm();
+    if (!flat) return whole;
+    if (!ground.empty())
+      box.extend(onScreen(darkenedBy(frame, ground.low.y()), frame.clipFromWorld));
+  }
+  return box;
+}
+
 }  // namespace
+
+void DrawItem::drawSeenSides() const {
+  if (culled) glEnable(GL_CULL_FACE);
+  mesh->draw();
+  glDisable(GL_CULL_FACE);
+}
 
 Frame prepareFrame(const Scene& scene, int width, int height) {
   Frame frame;
@@ -38,6 +81,10 @@ Frame prepareFrame(const Scene& scene, int width, int height) {
   // The floor reaches ten radii out and its near part may lie between the eye and the subject.
   const double near_m =
       camera.near_m > 0 ? camera.near_m : std::max(0.05 * reach_m, 0.01 * radius_m);
+  const double clearance_m = 2 * near_m;  // as far as the near plane's corners, and more
+  frame.seenFromOutside =
+      ((frame.subject.low - camera.eye_m).cwiseMax(camera.eye_m - frame.subject.high)).maxCoeff() >
+      clearance_m;
   const double far_m = camera.far_m > near_m ? camera.far_m : near_m + reach_m + 25 * radius_m;
   const double aspect = static_cast<double>(width) / height;
   frame.viewFromWorld = fascia::viewFromWorld(camera);
@@ -51,6 +98,8 @@ Frame prepareFrame(const Scene& scene, int width, int height) {
   frame.fillDirection = turned(studio.fill.direction, studio.azimuth_rad);
   frame.rimDirection = turned(studio.rim.direction, studio.azimuth_rad);
   frame.thicknessScale_m = std::max(2 * largestScatter(scene), 0.01f * frame.subjectRadius_m);
+  frame.subjectOnScreen = onScreen(cornersOf(frame.subject), frame.clipFromWorld);
+  frame.shadowedFloor = shadowedFloor(frame);
   return frame;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <fascia/render/gl/gpu_mesh.h>
+#include <fascia/render/gl/screen_area.h>
 #include <fascia/render/scene.h>
 
 namespace fascia::gl {
@@ -12,6 +13,7 @@ struct DrawItem {
   const GpuMesh* mesh;
   GLuint texture;  // 0 = none
   Eigen::Matrix4f worldFromObject;
+  bool culled;  // front faces hide its back faces, or it has none to be seen
 
   const Material& material() const { return drawable->material; }
   bool seeThrough() const { return material().opacity < 1; }
@@ -20,7 +22,11 @@ struct DrawItem {
     return material().kind != Material::Kind::ground &&
            !(material().kind == Material::Kind::skin && seeThrough());
   }
+  void drawSeenSides() const;
 };
+
+// How far things darken what is next to them, of the subject's radius; larger: darker and vaguer.
+inline constexpr float kOcclusionRadius = 0.22f;
 
 // One picture's scene, made ready for the passes.
 struct Frame {
@@ -28,10 +34,13 @@ struct Frame {
   int width = 0, height = 0;
   Box subject;  // everything but the ground
   float subjectRadius_m = 1;
+  bool seenFromOutside = true;  // or the camera may see solids from within
   Eigen::Matrix4f viewFromWorld, worldFromView, clipFromWorld;
   Eigen::Vector2f tanHalfFov;
   Eigen::Vector3f keyDirection, fillDirection, rimDirection;  // world, unit, towards the light
   float thicknessScale_m = 0.1f;  // thickness that the occlusion pass resolves
+  ScreenBox subjectOnScreen;      // holds all but the ground
+  ScreenBox shadowedFloor;        // holds the ground that the subject darkens
   std::vector<DrawItem> items;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fascia/base/error.h>
+#include <fascia/render/closed_surface.h>
 #include <fascia/render/curvature.h>
 
 namespace fascia::gl {
@@ -66,6 +67,7 @@ void GpuMesh::updateTopology(const Drawable& drawable) {
   triangles_ = drawable.mesh.triangles;
   uvValues_ = drawable.mesh.uvs;
   fibreValues_ = drawable.fibre_coordinates;
+  closed_ = facesOutwards(drawable.mesh);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
   glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                static_cast<GLsizeiptr>(triangles_.size() * sizeof(triangles_[0])),

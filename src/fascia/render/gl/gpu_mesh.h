@@ -17,6 +17,8 @@ class GpuMesh {
   // Throws Error when array lengths or triangle indices do not fit together.
   void update(const Drawable& drawable);
   void draw() const;
+  // Whether it was closed and faced outwards when its topology came; see facesOutwards().
+  bool closed() const { return closed_; }
 
  private:
   bool sameTopology(const Drawable& drawable) const;
@@ -30,6 +32,7 @@ class GpuMesh {
   std::vector<Eigen::Vector2f> uvValues_;
   std::vector<Eigen::Vector3f> fibreValues_;
   std::size_t vertexCount_ = 0;
+  bool closed_ = false;
   std::vector<Eigen::Vector3f> computedNormals_;
   std::vector<float> curvature_per_m_;
 };

@@ -134,13 +134,18 @@ void bindTexture(int unit, GLuint texture, GLuint sampler) {
   glBindSampler(static_cast<GLuint>(unit), sampler);
 }
 
-void allocateTexture(const Texture& texture, int width, int height, const TextureFormat& format,
-                     GLenum filter, const void* data) {
+void uploadLevel(const Texture& texture, int level, int width, int height,
+                 const TextureFormat& format, const void* data) {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, texture.id());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), width, height, 0,
+  glTexImage2D(GL_TEXTURE_2D, level, static_cast<GLint>(format.internal), width, height, 0,
                format.external, format.type, data);
+}
+
+void allocateTexture(const Texture& texture, int width, int height, const TextureFormat& format,
+                     GLenum filter, const void* data) {
+  uploadLevel(texture, 0, width, height, format, data);
   for (GLenum which : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glTexParameteri(GL_TEXTURE_2D, which, static_cast<GLint>(filter));
   for (GLenum which : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})

@@ -92,6 +92,9 @@ struct TextureFormat {
 // Storage without mipmaps, clamped at the edges.
 void allocateTexture(const Texture& texture, int width, int height, const TextureFormat& format,
                      GLenum filter, const void* data = nullptr);
+// Sets a level of a texture that has its level before; 0 is the picture itself.
+void uploadLevel(const Texture& texture, int level, int width, int height,
+                 const TextureFormat& format, const void* data);
 void attachTexture(const Framebuffer& framebuffer, GLenum attachment, const Texture& texture);
 // Throws Error when the driver refuses the bound framebuffer.
 void requireComplete(const char* what);

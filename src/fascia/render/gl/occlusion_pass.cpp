@@ -7,8 +7,7 @@
 namespace fascia::gl {
 namespace {
 
-constexpr int kFullSizePixels = 150'000;   // larger pictures are worked on at half size
-constexpr float kOcclusionRadius = 0.22f;  // of the subject's radius; larger: darker and vaguer
+constexpr int kFullSizePixels = 150'000;  // larger pictures are worked on at half size
 
 void drawFullScreen(const VertexArray& noArrays) {
   glBindVertexArray(noArrays.id());
@@ -50,10 +49,8 @@ void OcclusionPass::drawGeometry(const Frame& frame) {
   for (const DrawItem& item : frame.items) {
     const bool ground = item.material().kind == Material::Kind::ground;
     if (!ground && !item.casts()) continue;
-    if (ground) glEnable(GL_CULL_FACE);
     geometryProgram_.set("worldFromObject", item.worldFromObject);
-    item.mesh->draw();
-    glDisable(GL_CULL_FACE);
+    item.drawSeenSides();
   }
 }
 
@@ -76,7 +73,12 @@ void OcclusionPass::draw(const Frame& frame, const ShadowPass& shadow) {
   drawGeometry(frame);
 
   glDisable(GL_DEPTH_TEST);
-  glBindFramebuffer(GL_FRAMEBUFFER, occlusionTarget_.id());
+  glClearColor(1, 1, 1, 1);
+  for (const Framebuffer* target : {&blurredTarget_, &occlusionTarget_}) {
+    glBindFramebuffer(GL_FRAMEBUFFER, target->id());
+    glClear(GL_COLOR_BUFFER_BIT);
+  }
+  const ScissorTo darkened(frame.subjectOnScreen.merged(frame.shadowedFloor), width_, height_);
   occlusionProgram_.use();
   bindTexture(0, geometry_.id());
   occlusionProgram_.set("geometry", 0);

@@ -5,8 +5,6 @@
 namespace fascia::gl {
 namespace {
 
-constexpr int kSize = 2048;  // texels; smaller: stairs in the shadows of thin limbs
-
 void setFilter(const Sampler& sampler, GLint filter) {
   for (GLenum which : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glSamplerParameteri(sampler.id(), which, filter);
@@ -16,8 +14,9 @@ void setFilter(const Sampler& sampler, GLint filter) {
 
 }  // namespace
 
-ShadowPass::ShadowPass() : program_(shaders::kMeshVertex, shaders::kDepthFragment) {
-  allocateTexture(depth_, kSize, kSize, {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
+ShadowPass::ShadowPass(int size)
+    : program_(shaders::kMeshVertex, shaders::kDepthFragment), size_(size) {
+  allocateTexture(depth_, size_, size_, {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
                   GL_NEAREST);
   attachTexture(framebuffer_, GL_DEPTH_ATTACHMENT, depth_);
   const GLenum none = GL_NONE;
@@ -52,7 +51,7 @@ void ShadowPass::fit(const Frame& frame) {
 void ShadowPass::draw(const Frame& frame) {
   fit(frame);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glViewport(0, 0, kSize, kSize);
+  glViewport(0, 0, size_, size_);
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glClear(GL_DEPTH_BUFFER_BIT);
@@ -64,7 +63,7 @@ void ShadowPass::draw(const Frame& frame) {
   for (const DrawItem& item : frame.items) {
     if (!item.casts()) continue;
     program_.set("worldFromObject", item.worldFromObject);
-    item.mesh->draw();
+    item.drawSeenSides();
   }
 }
 
@@ -76,7 +75,7 @@ void ShadowPass::bind(Program& program, int depthUnit, int compareUnit) const {
   program.set("shadowFromWorld", shadowFromWorld_);
   program.set("shadowExtent_m", extent_m_);
   program.set("shadowDepth_m", range_m_);
-  program.set("shadowTexel_m", extent_m_ / kSize);
+  program.set("shadowTexel_m", extent_m_ / static_cast<float>(size_));
 }
 
 }  // namespace fascia::gl

@@ -36,7 +36,8 @@ void main() {
 )";
 
 const char* const kDepthFragment = R"(
-void main() {}
+layout(location = 0) out vec4 result;
+void main() { result = vec4(0.0); }
 )";
 
 const char* const kGeometryFragment = R"(

@@ -6,12 +6,9 @@ const char* const kStudio = R"(
 uniform vec3 keyDirection, keyColor, fillDirection, fillColor, rimDirection, rimColor;
 uniform vec3 skyColor, horizonColor, floorColor;
 uniform float exposure;
-uniform vec3 backgroundTop, backgroundBottom;  // sRGB
+uniform vec3 backgroundTop, backgroundBottom;  // linear
 uniform float vignette;
 
-vec3 linearFromSrgb(vec3 c) {
-  return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
-}
 vec3 srgbFromLinear(vec3 c) {
   return mix(1.055 * pow(max(c, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055, 12.92 * c,
              lessThanEqual(c, vec3(0.0031308)));
@@ -30,8 +27,7 @@ vec3 dither(vec3 srgb) {
 }
 
 vec3 backgroundColor(vec2 at) {
-  vec3 c = mix(linearFromSrgb(backgroundBottom), linearFromSrgb(backgroundTop),
-               smoothstep(0.0, 1.0, at.y));
+  vec3 c = mix(backgroundBottom, backgroundTop, smoothstep(0.0, 1.0, at.y));
   vec2 off = at - vec2(0.5, 0.48);
   return c * (1.0 - vignette * smoothstep(0.1, 0.75, length(off)));
 }

@@ -9,13 +9,9 @@ uniform vec2 targetSize;
 uniform mat4 viewFromWorld;
 uniform float unoccluded;      // 1: a see-through layer, which the occlusion pass did not see
 
-struct Occlusion {
-  float openness, key, throughness;
-};
-
 // The occlusion of this fragment's own surface: the four nearest texels, weighted by how well their
 // depth fits. Plain interpolation would leave halos along outlines.
-Occlusion occlusionHere(vec3 position_world) {
+Occlusion occlusionHere(vec3 position_world, vec3 n) {
   if (unoccluded > 0.5) return Occlusion(1.0, 1.0, 0.0);
   float depth = -(viewFromWorld * vec4(position_world, 1.0)).z;
   vec2 at = gl_FragCoord.xy / targetSize * occlusionSize - 0.5;

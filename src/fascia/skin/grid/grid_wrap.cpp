@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/grid/elastic_grid.h>
 #include <fascia/skin/grid/grid_kernels.h>
@@ -96,12 +97,11 @@ bool anyWay(const VectorArray& way) {
 // How far the matter that points are in has gone.
 VectorArray waysOfMatter(const GridWrap& wrap, const FollowInput& input,
                          const std::vector<TissueAnchors::Anchor>& placements) {
-  VectorArray before(wrap.rest.size()), now(wrap.rest.size()), scratch;
-  TissueAnchors(wrap.placements).place(wrap.posedFlesh, scratch, before);
-  TissueAnchors(placements).place(input.posedFlesh, scratch, now);
+  VectorArray way(wrap.rest.size()), scratch;
+  TissueAnchors(placements).place(input.posedFlesh, scratch, way);
   for (const auto axis : VectorArray::kAxes)
-    for (std::size_t k = 0; k < now.size(); ++k) (now.*axis)[k] -= (before.*axis)[k];
-  return now;
+    for (std::size_t k = 0; k < way.size(); ++k) (way.*axis)[k] -= (wrap.placed.*axis)[k];
+  return way;
 }
 
 void setEndWays(const GridWrap& wrap, const FollowInput& input, VectorArray& way) {
@@ -114,31 +114,33 @@ void setEndWays(const GridWrap& wrap, const FollowInput& input, VectorArray& way
   }
 }
 
-// Inner points to a distance of the fat from every solid.
-void pushOut(const GridLayout& g, const Field& field, double fat_m, VectorArray& r) {
-  const auto columns = static_cast<std::size_t>(g.columns);
-  VectorArray normal(columns);
-  FloatArray distance(columns);
-  const auto fat = static_cast<float>(fat_m);
-  for (int j = 1; j + 1 < g.rows; ++j) {
-    bool moved = true;
-    for (int pass = 0; moved && pass < kPushPasses; ++pass) {
-      moved = false;
-      for (std::size_t s = 0; s < field.solidCount(); ++s) {
-        const Vectors row = view(r, g.row(j), columns);
-        field.evaluate(SolidId(static_cast<std::int64_t>(s)), row, distance.data(),
-                       view(normal, 0, columns));
-        for (std::size_t i = 0; i < columns; ++i) {
-          const float depth = fat - distance[i];
-          if (!(depth > 0)) continue;
-          row.x[i] += depth * normal.x[i];
-          row.y[i] += depth * normal.y[i];
-          row.z[i] += depth * normal.z[i];
-          moved = true;
-        }
+// Points of a row to a distance of the fat from every solid.
+void pushRowOut(const Field& field, float fat_m, const Vectors& row) {
+  VectorArray normal(row.count);
+  FloatArray distance(row.count);
+  bool moved = true;
+  for (int pass = 0; moved && pass < kPushPasses; ++pass) {
+    moved = false;
+    for (std::size_t s = 0; s < field.solidCount(); ++s) {
+      field.evaluate(SolidId(static_cast<std::int64_t>(s)), row, distance.data(),
+                     view(normal, 0, row.count));
+      for (std::size_t i = 0; i < row.count; ++i) {
+        const float depth = fat_m - distance[i];
+        if (!(depth > 0)) continue;
+        row.x[i] += depth * normal.x[i];
+        row.y[i] += depth * normal.y[i];
+        row.z[i] += depth * normal.z[i];
+        moved = true;
       }
     }
   }
+}
+
+void pushOut(const GridLayout& g, const Field& field, double fat_m, VectorArray& r) {
+  parallelFor(static_cast<std::size_t>(g.rows - 2), [&](std::size_t row) {
+    pushRowOut(field, static_cast<float>(fat_m),
+               view(r, g.row(static_cast<int>(row) + 1), static_cast<std::size_t>(g.columns)));
+  });
 }
 
 void addFat(const GridLayout& g, double change_m, VectorArray& r) {
@@ -193,26 +195,26 @@ FollowedGrid followMatter(const GridWrap& wrap, const Flesh& flesh) {
 }
 
 void placeIn(const PosedFlesh& flesh, FollowedGrid& grid) {
-  for (TissueAnchors::Anchor& p : grid.placements)
+  parallelFor(grid.placements.size(), [&](std::size_t n) {
+    TissueAnchors::Anchor& p = grid.placements[n];
     p.material = flesh.materialFromWorld(p.solid, pointAt(grid.rest, p.point));
+  });
 }
 
 FollowedGrid follow(const GridWrap& wrap, const FollowInput& input) {
   const GridLayout& g = wrap.layout;
   FollowedGrid out = followMatter(wrap, input.flesh);
   VectorArray way = waysOfMatter(wrap, input, out.placements);
+  const bool matterMoves = anyWay(way);
   setEndWays(wrap, input, way);
   const double fatChange_m = input.fat_m - wrap.fat_m;
-  const bool moves = anyWay(way);
-  if (!moves && fatChange_m == 0) return out;
-  if (moves) {
-    fillPads(g, way);
-    for (const auto axis : VectorArray::kAxes) {
-      evenOut(g, way.*axis);
-      for (std::size_t k = 0; k < out.rest.size(); ++k) (out.rest.*axis)[k] += (way.*axis)[k];
-    }
-    fillPads(g, out.rest);
+  if (!anyWay(way) && fatChange_m == 0) return out;
+  fillPads(g, way);
+  for (const auto axis : VectorArray::kAxes) {
+    if (matterMoves) evenOut(g, way.*axis);
+    for (std::size_t k = 0; k < out.rest.size(); ++k) (out.rest.*axis)[k] += (way.*axis)[k];
   }
+  fillPads(g, out.rest);
   if (fatChange_m != 0) addFat(g, fatChange_m, out.rest);
   pushOut(g, input.posedFlesh, input.fat_m, out.rest);
   fillPads(g, out.rest);

@@ -38,6 +38,7 @@ struct GridWrap {
   EndRing ends[2];                                // bottom, top
   std::vector<TissueAnchors::Anchor> anchors;     // the strands' inner ends, point by point
   std::vector<TissueAnchors::Anchor> placements;  // every point in its nearest solid
+  VectorArray placed;                             // where those are: `rest`, but for rounding
 
   // The rest posture that it lies around.
   Flesh flesh;

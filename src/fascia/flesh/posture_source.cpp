@@ -1,0 +1,34 @@
+#include <fascia/flesh/posture_source.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia {
+namespace {
+
+bool exists(const Flesh& flesh, const Flesh::ParameterOverride& o) {
+  return o.solid.valid() && o.solid.index() < flesh.solidCount() && o.parameter >= 0 &&
+         static_cast<std::size_t>(o.parameter) < flesh.restSolid(o.solid).parameterCount();
+}
+
+bool weighs(const Flesh::ParameterOverride& o) {
+  return o.weight >= 0 && o.weight <= 1 && std::isfinite(o.weightRate_per_s);  // false for NaN
+}
+
+}  // namespace
+
+void admit(const Skeleton& skeleton, const Flesh& flesh, const Posture& former,
+           PostureSample& sample) {
+  Posture& posture = sample.posture;
+  const std::size_t count = skeleton.valueCount();
+  for (std::size_t i = posture.values.size(); i < count; ++i)
+    posture.values.push_back(skeleton.valueDof(static_cast<int>(i)).rest);
+  posture.values.resize(count);
+  posture.rates.resize(count);
+  skeleton.resolveRotations(former.values, posture);
+  skeleton.clampToLimits(posture);
+  std::erase_if(sample.parameters,
+                [&](const Flesh::ParameterOverride& o) { return !exists(flesh, o) || !weighs(o); });
+}
+
+}  // namespace fascia

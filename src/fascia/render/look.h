@@ -1,0 +1,9 @@
+#pragma once
+
+namespace fascia {
+
+// full: soft shadows, occlusion, light inside of skin. fast: for what moves in a window on a
+// machine without a graphics card; matt light and one hard shadow, the same shapes and colours.
+enum class Look { full, fast };
+
+}  // namespace fascia
