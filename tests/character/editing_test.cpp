@@ -201,6 +201,30 @@ TEST(Editing, LeavesTheSkinWhereItIs) {
   EXPECT_LT(largestDifference(*edited.skin(), before, after.skin.position), 0.08);
 }
 
+TEST(Editing, TakesTheSkinAlongWithFleshThatIsMovedFar) {
+  const Character start(smallCharacter());
+  CharacterState state = initialState(start, start.source(-1));
+  CharacterDef def = start.def();
+  def.skeleton.joints[0].offset_m += Vec3(3, 0, 0);  // farther than the body is large
+  def.flesh.solids[2].position_m.z() += 0.2;         // the head through the skin
+  const Character edited = start.edited(def), fresh(def);
+  state = carryOver(start, state, edited);
+  SkinStats stats;
+  for (int f = 0; f < 120; ++f) {
+    advance(edited, edited.source(-1), kFrame_s, state, stats);
+    measureSkin(*edited.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin, stats);
+  }
+  EXPECT_EQ(stats.repaired_points, 0u);
+  EXPECT_LT(stats.max_penetration_m, 1e-4);
+  EXPECT_LT(edited.skin()->grid()->elastic().maxStretch(state.skin.position), 2.5);
+  // Every point is near the flesh that it is tied to: none is held on the wrong side.
+  for (const TissueAnchors::Anchor& a : edited.skin()->grid()->anchors().anchors())
+    EXPECT_LT(
+        (pointAt(state.skin.position, a.point) - state.flesh.worldFromMaterial(a.solid, a.material))
+            .norm(),
+        0.2);
+}
+
 TEST(Editing, GoesOnBitForBitWhenNothingOfTheCharacterChanged) {
   const Character start(smallCharacter());
   CharacterState a = initialState(start, start.source(0));

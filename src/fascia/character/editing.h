@@ -17,7 +17,8 @@ namespace fascia {
 
 // The state of a running character as one of the character that it was edited into. Points of the
 // skin keep their places and velocities; strands go on from where the edit puts their inner ends,
-// so that the skin follows an edit by its own elasticity and contact. Soft solids keep their shapes
+// so that the skin follows an edit by its own elasticity and contact. Only if an edit moves flesh
+// farther than a twentieth of the skin's size, skin goes along with what it is tied to. Soft solids keep their shapes
 // and go along with their frames. A skin of another resolution is resampled; what is new starts
 // where the pose puts it. `state` must fit `from`.
 CharacterState carryOver(const Character& from, const CharacterState& state, const Character& to);

@@ -1,12 +1,19 @@
 #include <fascia/skin/carry_over.h>
 
+#include <memory>
 #include <utility>
 
+#include <fascia/math/points.h>
 #include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/grid/resample.h>
 
 namespace fascia {
 namespace {
+
+// An edit that moves flesh farther than this share of the skin's size takes the skin along. Within
+// it the skin stays where it is and is pulled and pushed over; farther, solids would be moved
+// through it, and it would be held on their wrong side.
+constexpr double kLargestEdit = 0.05;
 
 bool sameLayout(const GridLayout& a, const GridLayout& b) {
   return a.columns == b.columns && a.rows == b.rows;
@@ -37,6 +44,39 @@ SkinState onOtherGrid(const Skin& from, const SkinState& state, const Skin& to) 
   return out;
 }
 
+// Whether the same points have strands in both, so that their anchors can be compared.
+bool sameStrands(const Skin& a, const Skin& b) {
+  return !a.grid() || a.grid()->anchors().anchors().size() == b.grid()->anchors().anchors().size();
+}
+
+template <class Visit>
+void forEachStrand(const Skin& skin, const Visit& visit) {
+  if (skin.grid()) {
+    for (const TissueAnchors::Anchor& a : skin.grid()->anchors().anchors()) visit(a.point);
+    return;
+  }
+  for (std::size_t k = 0; k < skin.pointCount(); ++k) visit(k);
+}
+
+// If the edit has put flesh somewhere else, skin goes along with what it is tied to.
+void goAlong(const Skin& skin, const SkinPose& pose, const VectorArray& anchorBefore,
+             PointPlacer& placer, SkinState& state) {
+  const VectorArray& anchor = state.surroundings.anchor;
+  const double most_m = kLargestEdit * skin.size_m();
+  bool far = false;
+  forEachStrand(skin, [&](std::size_t k) {
+    far = far || (pointAt(anchor, k) - pointAt(anchorBefore, k)).squaredNorm() > most_m * most_m;
+  });
+  if (!far) return;
+  forEachStrand(skin, [&](std::size_t k) {
+    for (const auto axis : VectorArray::kAxes)
+      (state.position.*axis)[k] += (anchor.*axis)[k] - (anchorBefore.*axis)[k];
+  });
+  placer.placeFixed(pose, state.position);
+  skin.topology().complete(state.position);
+  state.surroundings.normal.fill(0.f);
+}
+
 SkinState placedAnew(const Skin& skin, const SkinPose& pose) {
   SkinState out;
   placeSkin(skin, pose, out);
@@ -61,7 +101,10 @@ SkinState carryOver(const Skin& from, SkinState state, const Skin& to, const Ski
   if (from.rigged() != to.rigged()) out.jiggle.frames = 0;
   out.coarse.clear();
   if (!out.ready) return out;
-  to.attachment().makePlacer()->placeAnchors(pose, out.surroundings.anchor);
+  const std::unique_ptr<PointPlacer> placer = to.attachment().makePlacer();
+  const VectorArray anchorBefore = out.surroundings.anchor;
+  placer->placeAnchors(pose, out.surroundings.anchor);
+  if (same && sameStrands(from, to)) goAlong(to, pose, anchorBefore, *placer, out);
   if (!to.coarse()) return out;
   out.coarse.push_back(std::move(coarser));
   // A fine point goes with the coarse surface beneath it already.
