@@ -12,9 +12,9 @@
 #include <fascia/io/documents/character_file.h>
 
 #include "bench/benches.h"
-#include "bench/example_files.h"
 #include "bench/machine.h"
 #include "console.h"
+#include "example_files.h"
 #include "simulation_options.h"
 
 namespace fascia {
@@ -27,7 +27,7 @@ one. Medians of many edits.
 
 Examples:
   fascia bench editing
-  fascia bench editing wombat.fascia.json --points 10000)";
+  fascia bench editing examples/wombat.fascia.json --points 10000)";
 
 struct EditingOptions {
   std::string file;
