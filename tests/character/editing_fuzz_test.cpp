@@ -17,13 +17,9 @@ int editCount() {
   return wanted ? std::atoi(wanted) : 120;
 }
 
-bool sameBits(const VectorArray& a, const VectorArray& b) {
-  return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 // Everything that stepping reads of the two.
 void expectSameModels(const Skin& a, const Skin& b) {
-  EXPECT_TRUE(sameBits(a.restPosition(), b.restPosition()));
+  EXPECT_TRUE(test::sameBits(a.restPosition(), b.restPosition()));
   const PointModel &p = a.points(), &q = b.points();
   EXPECT_EQ(p.mass, q.mass);
   EXPECT_EQ(p.drag, q.drag);
@@ -53,8 +49,8 @@ class EditedRun {
     const bool sameGrid = edited.skin()->pointCount() == character_.skin()->pointCount() &&
                           edited.skin()->grid()->columns() == character_.skin()->grid()->columns();
     if (sameGrid) {
-      EXPECT_TRUE(sameBits(state.skin.position, state_.skin.position));
-      EXPECT_TRUE(sameBits(state.skin.velocity, state_.skin.velocity));
+      EXPECT_TRUE(test::sameBits(state.skin.position, state_.skin.position));
+      EXPECT_TRUE(test::sameBits(state.skin.velocity, state_.skin.velocity));
     }
     if (wrapOf(edited) != wrapOf(character_)) wrapped_ = Character(next);
     character_ = edited;

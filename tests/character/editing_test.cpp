@@ -14,11 +14,7 @@ namespace {
 
 using test::smallCharacter;
 
-constexpr double kFrame_s = 1.0 / 60;
-
-bool sameBits(const VectorArray& a, const VectorArray& b) {
-  return a.x == b.x && a.y == b.y && a.z == b.z;
-}
+constexpr double kEditedFrame_s = 1.0 / 60;
 
 template <class Visit>
 void forEachPoint(const Skin& skin, const Visit& visit) {
@@ -41,10 +37,10 @@ double distanceTo(const Field& field, SolidId solid, const Vec3& p) {
   return d;
 }
 
-void run(const Character& character, int motion, int frames, CharacterState& state) {
+void play(const Character& character, int motion, int frames, CharacterState& state) {
   SkinStats stats;
   for (int f = 0; f < frames; ++f)
-    advance(character, character.source(motion), kFrame_s, state, stats);
+    advance(character, character.source(motion), kEditedFrame_s, state, stats);
 }
 
 struct RestFlesh {
@@ -117,8 +113,8 @@ TEST(Editing, AndUndoingComesBackToTheSameBits) {
   def.skin->fat.thickness_m = 0.02;
   def.skeleton.joints[2].offset_m.y() += 0.05;
   const Character there = start.edited(def), back = there.edited(start.def());
-  EXPECT_FALSE(sameBits(there.skin()->restPosition(), start.skin()->restPosition()));
-  EXPECT_TRUE(sameBits(back.skin()->restPosition(), start.skin()->restPosition()));
+  EXPECT_FALSE(test::sameBits(there.skin()->restPosition(), start.skin()->restPosition()));
+  EXPECT_TRUE(test::sameBits(back.skin()->restPosition(), start.skin()->restPosition()));
   EXPECT_EQ(test::hashAfter(back, 10), test::hashAfter(start, 10));
 }
 
@@ -187,16 +183,16 @@ TEST(Editing, WrapsAnewWhereSolidsComeOrGo) {
 TEST(Editing, LeavesTheSkinWhereItIs) {
   const Character start(smallCharacter());
   CharacterState state = initialState(start, start.source(0));
-  run(start, 0, 30, state);
+  play(start, 0, 30, state);
   CharacterDef def = start.def();
   def.skin->fat.thickness_m = 0.02;
   def.flesh.solids[1].position_m.z() += 0.03;
   const Character edited = start.edited(def);
   CharacterState after = carryOver(start, state, edited);
-  EXPECT_TRUE(sameBits(after.skin.position, state.skin.position));
-  EXPECT_TRUE(sameBits(after.skin.velocity, state.skin.velocity));
+  EXPECT_TRUE(test::sameBits(after.skin.position, state.skin.position));
+  EXPECT_TRUE(test::sameBits(after.skin.velocity, state.skin.velocity));
   const VectorArray before = after.skin.position;
-  run(edited, 0, 1, after);
+  play(edited, 0, 1, after);
   // Contact must move points out of a solid that was moved into them by 3 cm, and no farther.
   EXPECT_LT(largestDifference(*edited.skin(), before, after.skin.position), 0.08);
 }
@@ -211,7 +207,7 @@ TEST(Editing, TakesTheSkinAlongWithFleshThatIsMovedFar) {
   state = carryOver(start, state, edited);
   SkinStats stats;
   for (int f = 0; f < 120; ++f) {
-    advance(edited, edited.source(-1), kFrame_s, state, stats);
+    advance(edited, edited.source(-1), kEditedFrame_s, state, stats);
     measureSkin(*edited.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin, stats);
   }
   EXPECT_EQ(stats.repaired_points, 0u);
@@ -228,13 +224,13 @@ TEST(Editing, TakesTheSkinAlongWithFleshThatIsMovedFar) {
 TEST(Editing, GoesOnBitForBitWhenNothingOfTheCharacterChanged) {
   const Character start(smallCharacter());
   CharacterState a = initialState(start, start.source(0));
-  run(start, 0, 20, a);
+  play(start, 0, 20, a);
   CharacterDef def = start.def();
   def.description = "another text";
   const Character edited = start.edited(def);
   CharacterState b = carryOver(start, a, edited);
-  run(start, 0, 20, a);
-  run(edited, 0, 20, b);
+  play(start, 0, 20, a);
+  play(edited, 0, 20, b);
   EXPECT_EQ(hashOf(start, a), hashOf(edited, b));
 }
 
@@ -249,15 +245,15 @@ TEST(Editing, ComesToRestWhereAFreshCharacterDoes) {
   state = carryOver(start, state, edited);
   CharacterState other = initialState(fresh, fresh.source(-1));
   EXPECT_GT(largestDifference(*fresh.skin(), state.skin.position, other.skin.position), 1e-3);
-  run(edited, -1, 240, state);
-  run(fresh, -1, 240, other);
+  play(edited, -1, 240, state);
+  play(fresh, -1, 240, other);
   EXPECT_LT(largestDifference(*fresh.skin(), state.skin.position, other.skin.position), 5e-4);
 }
 
 TEST(Editing, ResamplesTheSkinToAnotherGridWhileItMoves) {
   const Character start(smallCharacter());
   CharacterState state = initialState(start, start.source(0));
-  run(start, 0, 20, state);
+  play(start, 0, 20, state);
   CharacterDef def = start.def();
   def.skin->columns = 24, def.skin->rows = 31;  // shares every second row and column
   const Character edited = start.edited(def);
@@ -275,13 +271,13 @@ TEST(Editing, TakesAFineSkinThatRidesOnACoarseOneAlong) {
   const Character start(test::fineCharacter(64));
   ASSERT_NE(start.skin()->coarse(), nullptr);
   CharacterState state = initialState(start, start.source(0));
-  run(start, 0, 5, state);
+  play(start, 0, 5, state);
   CharacterDef def = start.def();
   def.flesh.solids[1].position_m.x() += 0.01;
   const Character edited = start.edited(def);
   CharacterState after = carryOver(start, state, edited);
   ASSERT_EQ(after.skin.coarse.size(), 1u);
-  EXPECT_TRUE(sameBits(after.skin.coarse[0].position, state.skin.coarse[0].position));
+  EXPECT_TRUE(test::sameBits(after.skin.coarse[0].position, state.skin.coarse[0].position));
   // And one whose waves need no coarse grid any more goes on without.
   def.skin->material.stretch_u_N_per_m = def.skin->material.stretch_v_N_per_m = 20;
   def.skin->material.shear_N_per_m = 5;
@@ -292,7 +288,7 @@ TEST(Editing, TakesAFineSkinThatRidesOnACoarseOneAlong) {
   const Character again = soft.edited(start.def());
   ASSERT_NE(again.skin()->coarse(), nullptr);
   CharacterState last = carryOver(soft, softState, again);
-  run(again, 0, 10, last);
+  play(again, 0, 10, last);
   EXPECT_TRUE(test::allFinite(again, last));
   EXPECT_LT(again.skin()->grid()->elastic().maxStretch(last.skin.position), 3);
 }
@@ -342,12 +338,12 @@ TEST(HeldParameters, CountMoreThanDriversAndNeedNoEdit) {
   const SolidId head = character.flesh().find("head");
   for (int f = 0; f < 10; ++f) {
     state.held = {{head, 0, 0.15 + 0.002 * f, 0.12}};
-    run(character, 0, 1, state);
+    play(character, 0, 1, state);
     EXPECT_NEAR(state.flesh.rigid().solid(head).parameter(0), 0.15 + 0.002 * f, 1e-12);
   }
   EXPECT_TRUE(test::allFinite(character, state));
   state.held = {{SolidId(77), 0, 1, 0}};  // ignored
-  run(character, 0, 1, state);
+  play(character, 0, 1, state);
   EXPECT_TRUE(test::allFinite(character, state));
 }
 
@@ -356,9 +352,9 @@ TEST(CharacterState, OfAnotherCharacterIsRefusedAndStays) {
   other.skin->columns = 20;
   const Character a(smallCharacter()), b(other);
   CharacterState state = initialState(a, a.source(0));
-  run(a, 0, 3, state);
+  play(a, 0, 3, state);
   const std::uint64_t before = hashOf(a, state);
-  EXPECT_THROW(run(b, 0, 1, state), Error);
+  EXPECT_THROW(play(b, 0, 1, state), Error);
   EXPECT_EQ(hashOf(a, state), before);
 }
 
@@ -367,12 +363,12 @@ TEST(CharacterState, IsNotSteppedWithASkinThatIsGone) {
   CharacterDef def = smallCharacter();
   std::optional<Character> character(std::in_place, def);
   CharacterState state = initialState(*character, character->source(0));
-  run(*character, 0, 2, state);
+  play(*character, 0, 2, state);
   CharacterState copy = state;
   def.skin->material.density_kg_per_m2 = 1;
   character.emplace(def);
-  run(*character, 0, 5, state);
-  run(*character, 0, 5, copy);  // a copy starts without a workspace
+  play(*character, 0, 5, state);
+  play(*character, 0, 5, copy);  // a copy starts without a workspace
   EXPECT_EQ(hashOf(*character, state), hashOf(*character, copy));
 }
 
@@ -382,7 +378,7 @@ TEST(SoftEditing, KeepsTheShapesOfBodies) {
   def.flesh.solids[2].soft.emplace();
   const Character start(def);
   CharacterState state = initialState(start, start.source(0));
-  run(start, 0, 20, state);
+  play(start, 0, 20, state);
   def.flesh.solids[2].soft->rigidity_Pa *= 3;
   def.flesh.solids[0].position_m.x() += 0.01;
   const Character edited = start.edited(def);
@@ -392,7 +388,7 @@ TEST(SoftEditing, KeepsTheShapesOfBodies) {
                             now = edited.softFlesh()->shapes(after.bodies);
   ASSERT_EQ(before.size(), now.size());
   for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NEAR(before[i], now[i], 1e-9);
-  run(edited, 0, 20, after);
+  play(edited, 0, 20, after);
   EXPECT_TRUE(test::allFinite(edited, after));
   // Rigid solids may change without new bodies, and soft ones become rigid.
   def.flesh.solids[0].position_m.x() = 0;
@@ -401,7 +397,7 @@ TEST(SoftEditing, KeepsTheShapesOfBodies) {
   def.flesh.solids[2].soft.reset();
   const Character rigid = moved.edited(def);
   CharacterState last = carryOver(moved, carryOver(edited, after, moved), rigid);
-  run(rigid, 0, 5, last);
+  play(rigid, 0, 5, last);
   EXPECT_TRUE(test::allFinite(rigid, last));
 }
 

@@ -99,6 +99,10 @@ inline bool allFinite(const Character& character, const CharacterState& state) {
   return finite;
 }
 
+inline bool sameBits(const VectorArray& a, const VectorArray& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 // The longest edge over the size of the whole skin: an exploded skin is larger than its body.
 inline double longestEdge(const Skin& skin, const SkinState& state) {
   const GridLayout& g = skin.grid()->layout();
