@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <fascia/base/parallel.h>
-#include <fascia/skin/grid/leapfrog.h>
 #include <fascia/skin/mesh/mesh_kernels.h>
+#include <fascia/skin/point/leapfrog.h>
 
 namespace fascia {
 namespace {

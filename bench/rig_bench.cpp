@@ -138,7 +138,7 @@ void rigFrame(benchmark::State& state) {
   SkinState skinState;
   SkinWorkspace workspace;
   SkinStats stats;
-  carrySkin(skin, poses.at(0), skinState);
+  placeSkin(skin, poses.at(0), skinState);
   int frame = 0;
   for (auto _ : state) {
     advanceSkin(skin, poses, frame * kFrame_s, (frame + 1) * kFrame_s, skinState, workspace, stats);

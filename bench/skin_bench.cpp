@@ -4,6 +4,8 @@
 
 #include <fascia/io/documents/character_file.h>
 #include <fascia/skin/contact/flesh_contact.h>
+#include <fascia/skin/grid/grid_skin.h>
+#include <fascia/skin/grid/grid_stepper.h>
 #include <fascia/skin/grid/wrap.h>
 
 namespace fascia {
@@ -40,12 +42,12 @@ void countPoints(benchmark::State& state, const Skin& skin, int steps = 1) {
 void membraneForces(benchmark::State& state) {
   const Scene scene(kSpheres, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const Skin& skin = scene.skin();
-  VectorArray force(skin.layout().storage());
+  VectorArray force(skin.grid()->layout().storage());
   SweepScratch scratch;
-  scratch.resize(skin.layout());
+  scratch.resize(skin.grid()->layout());
   for (auto _ : state) {
-    gridForces(skin.layout(), skin.elastic().coefficients(), scene.state.skin.position, force,
-               scratch);
+    gridForces(skin.grid()->layout(), skin.grid()->elastic().coefficients(),
+               scene.state.skin.position, force, scratch);
     benchmark::ClobberMemory();
   }
   countPoints(state, skin);
@@ -61,10 +63,10 @@ void leapfrogSteps(benchmark::State& state) {
   StepCoefficients coefficients;
   prepareStep(skin.points(), skin.contactResponse(), skin.defaultStep_s(), coefficients);
   const SweepModel model{
-      &skin.layout(),
-      &skin.elastic().coefficients(),
+      &skin.grid()->layout(),
+      &skin.grid()->elastic().coefficients(),
       {&skin.points(), &coefficients, &start.surroundings, nullptr, {0.f, -9.81f, 0.f}}};
-  GridStepper stepper(skin.layout());
+  GridStepper stepper(skin.grid()->layout());
   VectorArray position = start.position, velocity = start.velocity;
   for (auto _ : state) {
     state.PauseTiming();
@@ -112,7 +114,7 @@ BENCHMARK(stepCoefficients);
 void wrap(benchmark::State& state, const char* name) {
   const Scene scene(name, 64, 16);
   const SkinDef& def = *scene.character.def().skin;
-  const GridLayout& g = scene.skin().layout();
+  const GridLayout& g = scene.skin().grid()->layout();
   const auto ring = [&](int row, double up) {
     const VectorArray& rest = scene.skin().restPosition();
     EndRing out{Vec3::Zero(), Vec3(0, up, 0), 0.01};

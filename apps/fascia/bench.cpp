@@ -15,6 +15,7 @@ void addBench(CLI::App& program, Console& console) {
   addScalingBench(group, console);
   addDeformationBench(group, console);
   addReflexesBench(group, console);
+  addEditingBench(group, console);
   addDrawingBench(group, console);
 #ifdef FASCIA_WITH_BULLET
   addPeersBench(group, console);

@@ -36,7 +36,7 @@ double heightOf_m(const Recording& recording) {
 }  // namespace
 
 bool isSmallGridBake(const Character& character, const RigBakeOptions& options) {
-  return character.skin() && character.skin()->isGrid() && wayOf(options) != "cache";
+  return character.skin() && character.skin()->grid() && wayOf(options) != "cache";
 }
 
 GridBakeReport writeGridBake(const Character& character,

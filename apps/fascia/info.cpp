@@ -9,6 +9,7 @@
 #include <fascia/io/rig_import/rig_import.h>
 #include <fascia/math/ode/integrators.h>
 #include <fascia/render/gl_context.h>
+#include <fascia/skin/grid/grid_skin.h>
 
 #include "commands.h"
 #include "console.h"
@@ -94,9 +95,9 @@ void addCharacter(const Character& character, Facts& facts) {
   facts.add("solids", count(character.flesh().solidCount()));
   facts.add("ornaments", count(character.ornaments().solidCount()));
   if (const Skin* skin = character.skin()) {
-    if (skin->isGrid()) {
-      facts.add("skin_columns", skin->columns());
-      facts.add("skin_rows", skin->rows());
+    if (skin->grid()) {
+      facts.add("skin_columns", skin->grid()->columns());
+      facts.add("skin_rows", skin->grid()->rows());
     }
     facts.add("skin_points", count(skin->pointCount()));
   }

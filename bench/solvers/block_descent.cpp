@@ -35,7 +35,7 @@ class BlockDescent final : public Scheme {
   }
 
   void visitColour(int column, int row, VectorArray& r) const {
-    const GridLayout& g = skin_.layout();
+    const GridLayout& g = skin_.grid()->layout();
     for (int j = row; j < g.rows; j += 2)
       for (int i = column; i < g.columns; i += 2)
         if (skin_.points().free[g.at(i, j)] > 0) descend(i, j, r);
@@ -48,7 +48,7 @@ class BlockDescent final : public Scheme {
 
   void addEdge(const VectorArray& r, std::size_t self, std::size_t other, float w, float g,
                Local& local) const {
-    const float limit = skin_.elastic().coefficients().cap * g;
+    const float limit = skin_.grid()->elastic().coefficients().cap * g;
     const Vec3f e = at(r, other) - at(r, self);
     const float t = e.squaredNorm() - g, stress = std::clamp(t, -limit, limit);
     local.f += w * stress * e;
@@ -57,7 +57,7 @@ class BlockDescent final : public Scheme {
   }
 
   void addCell(const VectorArray& r, const Cell& cell, int corner, Local& local) const {
-    const ElasticGrid::Coefficients& c = skin_.elastic().coefficients();
+    const ElasticGrid::Coefficients& c = skin_.grid()->elastic().coefficients();
     const std::size_t k = cell.self;
     const Vec3f d1 = at(r, cell.upRight) - at(r, k), d2 = at(r, cell.right) - at(r, cell.up);
     const Vec3f s1 = 0.5f * (d1 + d2), s2 = 0.5f * (d1 - d2);
@@ -68,8 +68,8 @@ class BlockDescent final : public Scheme {
   }
 
   void addMembrane(const VectorArray& r, int i, int j, Local& local) const {
-    const GridLayout& g = skin_.layout();
-    const ElasticGrid::Coefficients& c = skin_.elastic().coefficients();
+    const GridLayout& g = skin_.grid()->layout();
+    const ElasticGrid::Coefficients& c = skin_.grid()->elastic().coefficients();
     const int left = g.wrapped(i - 1);
     const std::size_t k = g.at(i, j), l = g.at(left, j), d = g.at(i, j - 1);
     addEdge(r, k, g.at(g.wrapped(i + 1), j), c.w1[k], c.g1[k], local);
@@ -96,7 +96,7 @@ class BlockDescent final : public Scheme {
 
   void descend(int i, int j, VectorArray& r) const {
     const PointModel& p = skin_.points();
-    const std::size_t k = skin_.layout().at(i, j);
+    const std::size_t k = skin_.grid()->layout().at(i, j);
     const float inertia = p.mass[k] / (step_s_ * step_s_), drag = p.drag[k] / step_s_;
     const Vec3f here = at(r, k);
     Local local{-inertia * (here - at(target_, k)) - drag * (here - at(before_, k)),

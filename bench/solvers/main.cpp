@@ -43,7 +43,7 @@ class Comparison {
     run_.motion = usual.findMotion(options.motion);
     if (run_.motion < 0) throw Error("no motion is named '" + options.motion + "'");
     run_.frames = static_cast<int>(std::lround(options.seconds / kFrame_s));
-    layout_ = usual.skin()->layout();
+    layout_ = usual.skin()->grid()->layout();
     height_m_ = heightOf(usual.skin()->restPosition());
     const Character fine =
         build("leapfrog", step_s_ / kRefinement, options.interval_s / kRefinement);

@@ -8,7 +8,9 @@ namespace {
 class ScalarLeapfrog final : public Scheme {
  public:
   explicit ScalarLeapfrog(const Skin& skin)
-      : skin_(skin), force_(skin.layout().storage()), anchorVelocity_(skin.layout().storage()) {}
+      : skin_(skin),
+        force_(skin.grid()->layout().storage()),
+        anchorVelocity_(skin.grid()->layout().storage()) {}
 
   void run(const StepInterval& interval, VectorArray& r, VectorArray& v) override {
     const double h = interval.duration_s / interval.steps;
@@ -30,7 +32,7 @@ class ScalarLeapfrog final : public Scheme {
   void carry(const PointSurroundings& around, VectorArray& v) {
     forEachFree(skin_, [&](std::size_t k) {
       const Vec3f change = at(around.anchorVelocity, k) - at(anchorVelocity_, k);
-      put(v, k, at(v, k) + coefficients_.carried[k] * change);
+      put(v, k, at(v, k) + coefficients_.carry[k] * change);
     });
     anchorVelocity_ = around.anchorVelocity;
   }
@@ -38,7 +40,7 @@ class ScalarLeapfrog final : public Scheme {
   void add(std::size_t k, const Vec3f& f) { put(force_, k, at(force_, k) + f); }
 
   void addEdge(const VectorArray& r, std::size_t a, std::size_t b, float w, float g) {
-    const float cap = skin_.elastic().coefficients().cap;
+    const float cap = skin_.grid()->elastic().coefficients().cap;
     const Vec3f e = at(r, b) - at(r, a);
     const Vec3f f = w * std::clamp(e.squaredNorm() - g, -cap * g, cap * g) * e;
     add(a, f);
@@ -46,8 +48,8 @@ class ScalarLeapfrog final : public Scheme {
   }
 
   void addMembrane(const VectorArray& r) {
-    const GridLayout& g = skin_.layout();
-    const ElasticGrid::Coefficients& c = skin_.elastic().coefficients();
+    const GridLayout& g = skin_.grid()->layout();
+    const ElasticGrid::Coefficients& c = skin_.grid()->elastic().coefficients();
     for (int j = 0; j < g.rows; ++j) {
       for (int i = 0; i < g.columns; ++i) {
         const Cell cell(g, i, j);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/skin.h>
 
 #include "solvers/scheme.h"
@@ -83,7 +84,7 @@ inline float slideOf(const ContactResponse& response, float step_s) {
 // Calls visit(k) for every point that is free to move.
 template <class Visit>
 void forEachFree(const Skin& skin, const Visit& visit) {
-  const GridLayout& g = skin.layout();
+  const GridLayout& g = skin.grid()->layout();
   for (int j = 0; j < g.rows; ++j)
     for (std::size_t k = g.row(j); k < g.row(j) + static_cast<std::size_t>(g.columns); ++k)
       if (skin.points().free[k] > 0) visit(k);
@@ -92,7 +93,7 @@ void forEachFree(const Skin& skin, const Visit& visit) {
 // Calls visit(k) for every point that moves with a joint.
 template <class Visit>
 void forEachFixed(const Skin& skin, const Visit& visit) {
-  for (const Skin::Fixed& f : skin.fixed()) visit(f.point);
+  for (const GridAttachment::Fixed& f : skin.grid()->fixed()) visit(f.point);
 }
 
 // Ends a step of a scheme that works with positions only: velocities from the step taken, contact.

@@ -29,10 +29,10 @@ class SchemeRunner {
         contact_({skin_.blocks().begin(), skin_.blocks().end()}),
         position_(start.position),
         velocity_(start.velocity) {
-    around_.resize(skin_.layout().storage());
-    nextAnchor_.resize(skin_.layout().storage());
+    around_.resize(skin_.grid()->layout().storage());
+    nextAnchor_.resize(skin_.grid()->layout().storage());
     poseLayers(character_, character_.source(motion_), true, state_);
-    skin_.anchors().place(state_.flesh, scratch_, around_.anchor);
+    skin_.grid()->anchors().place(state_.flesh, scratch_, around_.anchor);
     project(skin_.settings().interval_s);
   }
 
@@ -57,20 +57,21 @@ class SchemeRunner {
   const VectorArray& position() const { return position_; }
 
  private:
-  Vec3f fixedPlace(const Skin::Fixed& f) const {
+  Vec3f fixedPlace(const GridAttachment::Fixed& f) const {
     return state_.skeleton.joint_world[f.joint.index()].point(f.position_joint).cast<float>();
   }
 
   void moveAnchors(float rate_per_s) {
-    skin_.anchors().place(state_.flesh, scratch_, nextAnchor_);
+    skin_.grid()->anchors().place(state_.flesh, scratch_, nextAnchor_);
     for (std::size_t k = 0; k < nextAnchor_.size(); ++k)
       put(around_.anchorVelocity, k, rate_per_s * (at(nextAnchor_, k) - at(around_.anchor, k)));
-    for (const Skin::Fixed& f : skin_.fixed())
+    for (const GridAttachment::Fixed& f : skin_.grid()->fixed())
       put(velocity_, f.point, rate_per_s * (fixedPlace(f) - at(position_, f.point)));
   }
 
   void project(double duration_s) {
-    for (const Skin::Fixed& f : skin_.fixed()) put(position_, f.point, fixedPlace(f));
+    for (const GridAttachment::Fixed& f : skin_.grid()->fixed())
+      put(position_, f.point, fixedPlace(f));
     const auto reach =
         static_cast<float>(2 * maxSpeed_m_per_s_ * duration_s + 0.01 * skin_.size_m());
     const auto restitution = static_cast<float>(skin_.contactResponse().restitution);
@@ -78,7 +79,7 @@ class SchemeRunner {
                             .project(state_.flesh, skin_.points(), reach, restitution, position_,
                                      velocity_, around_)
                             .maxSpeed_m_per_s;
-    fillPads(skin_.layout(), position_);
+    fillPads(skin_.grid()->layout(), position_);
   }
 
   const Character& character_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <fascia/character/character.h>
+#include <fascia/skin/grid/grid_skin.h>
 
 #include "solvers/scheme.h"
 

@@ -9,7 +9,8 @@ namespace {
 // multipliers start at 0: Δλ = −C / (Σ w|∇C|² + α/h²).
 class Xpbd final : public Scheme {
  public:
-  explicit Xpbd(const Skin& skin) : skin_(skin), inverseMass_(skin.layout().storage(), 0.f) {
+  explicit Xpbd(const Skin& skin)
+      : skin_(skin), inverseMass_(skin.grid()->layout().storage(), 0.f) {
     forEachFree(skin, [&](std::size_t k) { inverseMass_[k] = 1 / skin.points().mass[k]; });
   }
 
@@ -48,7 +49,7 @@ class Xpbd final : public Scheme {
     const Vec3f e = at(r, b) - at(r, a);
     const float squared = e.squaredNorm();
     const float lambda = multiplier(squared - g, 4 * squared * masses, 0.5f * w * step_s_ * step_s_,
-                                    skin_.elastic().coefficients().cap * g);
+                                    skin_.grid()->elastic().coefficients().cap * g);
     put(r, a, at(r, a) - 2 * inverseMass_[a] * lambda * e);
     put(r, b, at(r, b) + 2 * inverseMass_[b] * lambda * e);
   }
@@ -70,8 +71,8 @@ class Xpbd final : public Scheme {
   }
 
   void solveMembrane(VectorArray& r) const {
-    const GridLayout& g = skin_.layout();
-    const ElasticGrid::Coefficients& c = skin_.elastic().coefficients();
+    const GridLayout& g = skin_.grid()->layout();
+    const ElasticGrid::Coefficients& c = skin_.grid()->elastic().coefficients();
     for (int j = 0; j < g.rows; ++j) {
       for (int i = 0; i < g.columns; ++i) {
         const Cell cell(g, i, j);

@@ -64,7 +64,7 @@ TEST(CharacterState, HashCoversEveryPointsPositionAndVelocity) {
   const Character character(test::smallCharacter());
   CharacterState state = initialState(character, character.source(0));
   const std::uint64_t hash = hashOf(character, state);
-  const std::size_t k = character.skin()->layout().at(11, 15);
+  const std::size_t k = character.skin()->grid()->layout().at(11, 15);
   for (FloatArray* value : {&state.skin.position.x, &state.skin.velocity.z}) {
     const float was = (*value)[k];
     (*value)[k] = std::nextafter(was, 10.f);
@@ -95,7 +95,7 @@ TEST(Character, OfFrozenPostureComesToTheSameRestWithAnyFrameRate) {
     for (int f = 0; f < 6 / frame; ++f)
       advance(character, character.source(-1), frame, state[n], stats);
   }
-  const GridLayout& g = character.skin()->layout();
+  const GridLayout& g = character.skin()->grid()->layout();
   double farthest = 0;
   for (int j = 0; j < g.rows; ++j)
     for (int i = 0; i < g.columns; ++i)
@@ -112,7 +112,7 @@ TEST(Character, DividesLongFrames) {
   advance(character, character.source(0), 0.25, whole, stats);
   for (int i = 0; i < 3; ++i) advance(character, character.source(0), 0.25 / 3, parts, stats);
   EXPECT_NEAR(whole.time_s, parts.time_s, 1e-12);
-  const std::size_t k = character.skin()->layout().at(3, 8);
+  const std::size_t k = character.skin()->grid()->layout().at(3, 8);
   EXPECT_NEAR(whole.skin.position.x[k], parts.skin.position.x[k], 1e-4);
   EXPECT_LE(stats.step_max_s, 1.0 / 12);
 }
@@ -131,9 +131,11 @@ TEST(Resolution, CanChangeAtAnyMomentOfARun) {
     next.time_s = state.time_s;
     next.skin = resampled(*from->skin(), state.skin, *to->skin());
     const float middle =
-        state.skin.position.x[from->skin()->layout().at(0, from->skin()->rows() / 2)];
-    EXPECT_NEAR(next.skin.position.x[to->skin()->layout().at(0, to->skin()->rows() / 2)], middle,
-                0.05);
+        state.skin.position
+            .x[from->skin()->grid()->layout().at(0, from->skin()->grid()->rows() / 2)];
+    EXPECT_NEAR(
+        next.skin.position.x[to->skin()->grid()->layout().at(0, to->skin()->grid()->rows() / 2)],
+        middle, 0.05);
     for (int f = 0; f < 10; ++f) {
       advance(*to, to->source(0), 1.0 / 60, next, stats);
       EXPECT_TRUE(test::allFinite(*to, next));

@@ -1,13 +1,10 @@
 // Every file in examples/ is a test case.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include <fascia/base/parallel.h>
-#include <fascia/io/documents/character_file.h>
-#include <fascia/io/documents/scene_file.h>
 #include <fascia/math/ode/integrators.h>
 
+#include "examples.h"
 #include "small_character.h"
 
 namespace fascia {
@@ -15,30 +12,10 @@ namespace {
 
 using test::hashAfter;
 
-std::vector<std::string> exampleFiles() {
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(FASCIA_SOURCE_DIR "/examples"))
-    if (const std::string path = entry.path().string();
-        path.ends_with(".fascia.json") && !isSceneFile(path))
-      files.push_back(path);
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-std::string nameOf(const testing::TestParamInfo<std::string>& file) {
-  std::string name = std::filesystem::path(file.param).stem().stem().string();
-  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  return name;
-}
-
 class Examples : public testing::TestWithParam<std::string> {
  protected:
-  // Short grids keep the tests quick; the models are the same.
   Character load(int columns, int rows, const std::string& integrator = "") const {
-    BuildOptions options;
-    options.columns = columns, options.rows = rows;
-    options.integrator = integrator;
-    return loadCharacter(GetParam(), options);
+    return test::loadExample(GetParam(), columns, rows, integrator);
   }
 };
 
@@ -64,7 +41,7 @@ TEST_P(Examples, HaveTheSameBitsOnAnyNumberOfThreadsWithEveryIntegrator) {
       CharacterState state;
       SkinStats stats;
       poseLayers(character, character.source(0), false, state);
-      carrySkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin);
+      placeSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin);
       for (int f = 0; f < 2; ++f) advance(character, character.source(0), 1.0 / 60, state, stats);
       hash[n] = hashOf(character, state);
     }
@@ -113,7 +90,8 @@ TEST_P(Examples, SurviveATeleportOfEveryJoint) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, Examples, testing::ValuesIn(exampleFiles()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Files, Examples, testing::ValuesIn(test::exampleCharacters()),
+                         test::exampleName);
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Examples);
 
 }  // namespace

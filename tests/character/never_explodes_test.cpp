@@ -163,7 +163,7 @@ TEST(NeverExplodes, WhenTheStateIsBroken) {
     CharacterDef def = test::smallCharacter();
     def.simulation.integrator = integrator;
     const Character character(def);
-    const GridLayout& g = character.skin()->layout();
+    const GridLayout& g = character.skin()->grid()->layout();
     const Worst worst =
         test::simulate(character, 0, 1.0 / 60, 12, [&](CharacterState& state, int frame) {
           if (frame == 2) state.skin.position.x[g.at(4, 8)] = nan;

@@ -8,6 +8,7 @@
 
 #include <fascia/base/error.h>
 #include <fascia/character/character.h>
+#include <fascia/skin/grid/grid_skin.h>
 
 namespace fascia::test {
 
@@ -87,7 +88,7 @@ inline MotionDef teleport(double every_s, int times, double angle_rad, double wa
 
 // Fixed points are placed, not moved: their velocities are made anew for every interval.
 inline bool allFinite(const Character& character, const CharacterState& state) {
-  const GridLayout& g = character.skin()->layout();
+  const GridLayout& g = character.skin()->grid()->layout();
   bool finite = true;
   for (const VectorArray* a : {&state.skin.position, &state.skin.velocity}) {
     const int fixed = a == &state.skin.velocity ? 1 : 0;
@@ -98,9 +99,13 @@ inline bool allFinite(const Character& character, const CharacterState& state) {
   return finite;
 }
 
+inline bool sameBits(const VectorArray& a, const VectorArray& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 // The longest edge over the size of the whole skin: an exploded skin is larger than its body.
 inline double longestEdge(const Skin& skin, const SkinState& state) {
-  const GridLayout& g = skin.layout();
+  const GridLayout& g = skin.grid()->layout();
   const VectorArray& r = state.position;
   float longest = 0;
   for (int j = 0; j < g.rows; ++j) {
@@ -140,7 +145,7 @@ inline Worst simulate(const Character& character, int motion, double frame_s, in
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
                 worst.stats);
     worst.longestEdge = std::max(worst.longestEdge, longestEdge(*character.skin(), state.skin));
-    worst.lastStretch = character.skin()->elastic().maxStretch(state.skin.position);
+    worst.lastStretch = character.skin()->grid()->elastic().maxStretch(state.skin.position);
   }
   worst.penetration_m = worst.stats.max_penetration_m;
   worst.stretch = worst.stats.max_edge_stretch;

@@ -85,7 +85,7 @@ TEST(CharacterFile, FullTextIsUnderstood) {
   EXPECT_EQ(def.skin->regions[0].u_min, 0.8);
   ASSERT_EQ(def.skin->points->fat.size(), 6u);
   EXPECT_EQ(def.skin->points->fat[2], 0.012f);
-  EXPECT_EQ(def.skin->points->anchor_solid, (std::vector<int>{0, 0, 0, 0, -1, -1}));
+  EXPECT_EQ(def.skin->points->anchor_solid.values(), (std::vector<int>{0, 0, 0, 0, -1, -1}));
   const MotionDef& flex = def.motions[0];
   EXPECT_DOUBLE_EQ(flex.tracks[0].keys[2].value, radians(-10));
   EXPECT_EQ(flex.tracks[0].keys[2].tension, 0.5);
@@ -102,8 +102,8 @@ TEST(CharacterFile, AnyNumbersComeBackToTheBit) {
     joint.offset_m.x() = std::ldexp(uniform(random), static_cast<int>(random() % 80) - 60);
     joint.dofs[0].rest = uniform(random);
     def.motions[0].tracks[0].keys[1].value = uniform(random);
-    def.skin->points->fat[1] = std::abs(static_cast<float>(uniform(random))) / 3;
-    def.skin->points->anchor[4][2] = -0.0f;
+    def.skin->points->fat.edit()[1] = std::abs(static_cast<float>(uniform(random))) / 3;
+    def.skin->points->anchor.edit()[4][2] = -0.0f;
     const CharacterDef back = readCharacterText(characterText(def)).def;
     const JointDef& same = back.skeleton.joints[1];
     ASSERT_EQ(same.orientation_rad, joint.orientation_rad);

@@ -24,7 +24,7 @@ TEST(AddedMass, IsNoneWhereTheStepResolvesTheStiffness) {
   PinnedSheet sheet = hanging(150, 4, 3);
   sheet.prepare(1e-3);
   test::forEachPoint(sheet.layout, [&](int, int, std::size_t k) {
-    EXPECT_EQ(sheet.step.carried[k], 0);
+    EXPECT_EQ(sheet.step.carry[k], 0);
     if (sheet.points.free[k] == 0) return;
     const double z = 0.5 * 1e-3 * sheet.points.drag[k] / sheet.points.mass[k];
     EXPECT_NEAR(sheet.step.gain[k] * sheet.points.mass[k] * (1 + z) / 1e-3, 1, 1e-6);
@@ -79,14 +79,14 @@ TEST(AddedMass, IsNeeded) {
 TEST(AddedMass, DoesNotChangeWhereTheSheetComesToRest) {
   PinnedSheet fine = hanging(2000, 4, 400);
   fine.prepare(1e-3);
-  ASSERT_EQ(*std::max_element(fine.step.carried.begin(), fine.step.carried.end()), 0);
+  ASSERT_EQ(*std::max_element(fine.step.carry.begin(), fine.step.carry.end()), 0);
   fine.run(20000);
   const double sag = test::largestDistance(fine.layout, fine.position, fine.rest);
   ASSERT_GT(sag, 0.01);
   for (const double h : {1.0 / 60, 1.0 / 12}) {
     PinnedSheet coarse = hanging(2000, 4, 400);
     coarse.prepare(h);
-    ASSERT_GT(coarse.step.carried[coarse.layout.at(4, 4)], 0.5);
+    ASSERT_GT(coarse.step.carry[coarse.layout.at(4, 4)], 0.5);
     coarse.run(20000);
     EXPECT_LT(test::largestDistance(fine.layout, fine.position, coarse.position), 1e-3 * sag) << h;
   }
@@ -102,7 +102,7 @@ TEST(AddedMass, OfTheLongestStepIsTheShareAskedFor) {
     test::forEachPoint(at.layout, [&](int, int, std::size_t k) {
       if (at.points.free[k] == 0) return;
       own += at.points.mass[k];
-      added += at.points.mass[k] * at.step.carried[k] / (1 - at.step.carried[k]);
+      added += at.points.mass[k] * at.step.carry[k] / (1 - at.step.carry[k]);
     });
     return added / own;
   };

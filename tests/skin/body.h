@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/skin.h>
 
 #include "grids.h"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <fascia/skin/skin_def.h>
+#include <fascia/skin/def/skin_def.h>
 
 #include "grids.h"
 

@@ -34,7 +34,7 @@ TEST(Leapfrog, ConvergesWithSecondOrder) {
     PinnedSheet sheet = thrown();
     layout = sheet.layout;
     sheet.prepare(kFineStep_s / (1 << level));
-    ASSERT_EQ(*std::max_element(sheet.step.carried.begin(), sheet.step.carried.end()), 0);
+    ASSERT_EQ(*std::max_element(sheet.step.carry.begin(), sheet.step.carry.end()), 0);
     sheet.startFromRest();
     sheet.run(256 << level);
     result[level] = sheet.position;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <fascia/skin/mesh/rigged_skin.h>
+#include <fascia/skin/skin.h>
 
 namespace fascia::test {
 
@@ -177,7 +178,7 @@ class ArmRun final : public SkinPoseSource {
   static constexpr double kFrame_s = 1.0 / 60;
 
   ArmRun(const MeshArm& arm, Move move) : arm_(arm), move_(std::move(move)) {
-    carrySkin(*arm_.skin, at(0), state);
+    placeSkin(*arm_.skin, at(0), state);
   }
 
   SkinPose at(double time_s) override {

@@ -2,7 +2,7 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/finite_difference.h>
-#include <fascia/skin/grid/leapfrog.h>
+#include <fascia/skin/point/leapfrog.h>
 
 #include "meshes.h"
 

@@ -68,9 +68,8 @@ TEST(MeshSkin, SagsWhenGravityChangesSoThatItIsReallyCarried) {
     arm.valueOf(posture, MeshArm::upper, Dof::rz) = kPi;  // upside down
   });
   run.advance(60);
-  CarryScratch scratch;
   VectorArray carried = run.state.position;
-  arm.skin->placeAll(run.at(1), scratch, carried);
+  arm.skin->attachment().makePlacer()->placeAll(run.at(1), carried);
   double farthest = 0;
   for (std::size_t k = 0; k < arm.skin->pointCount(); ++k)
     farthest = std::max<double>(farthest, std::abs(carried.y[k] - run.state.position.y[k]));
@@ -152,9 +151,8 @@ TEST(MeshSkin, CarriesBordersExactly) {
   ASSERT_EQ(arm.skin->fixedPoints().size(), kAround + 6u);  // the open end and the bead
   ArmRun run(arm, bend(arm));
   run.advance(30);
-  CarryScratch scratch;
   VectorArray carried = run.state.position;
-  arm.skin->placeAll(run.at(30 * ArmRun::kFrame_s), scratch, carried);
+  arm.skin->attachment().makePlacer()->placeAll(run.at(30 * ArmRun::kFrame_s), carried);
   for (const std::size_t k : arm.skin->fixedPoints())
     EXPECT_LT((run.place(k) - Vec3(carried.x[k], carried.y[k], carried.z[k])).norm(), kRounding_m);
 }
@@ -178,9 +176,9 @@ TEST(MeshSkin, MovesEveryPointByItsJointsIfAllAreRigid) {
   ASSERT_TRUE(arm.build());
   ArmRun run(arm, bend(arm));
   run.advance(10);
-  CarryScratch scratch;
   VectorArray carried = run.state.position;
-  arm.skin->placeAll({&run.posedFlesh, run.posedSkeleton.joint_world}, scratch, carried);
+  arm.skin->attachment().makePlacer()->placeAll({&run.posedFlesh, run.posedSkeleton.joint_world},
+                                                carried);
   EXPECT_EQ(carried.x, run.state.position.x);
   EXPECT_EQ(carried.y, run.state.position.y);
 }
@@ -247,9 +245,8 @@ TEST(PosedSkin, IsWhereItsPoseFunctionHasItAndNothingElse) {
   ASSERT_FALSE(arm.skin->isSimulated());
   ArmRun run(arm, bend(arm));
   run.advance(40);
-  CarryScratch scratch;
   VectorArray placed = run.state.position;
-  arm.skin->placeAll(run.at(40 * ArmRun::kFrame_s), scratch, placed);
+  arm.skin->attachment().makePlacer()->placeAll(run.at(40 * ArmRun::kFrame_s), placed);
   EXPECT_EQ(placed.x, run.state.position.x);
   EXPECT_EQ(placed.y, run.state.position.y);
   EXPECT_EQ(run.stats.repaired_points, 0u);
@@ -262,12 +259,11 @@ TEST(PosedSkin, SwingsBehindAShakeByItsDial) {
     arm.skinDef.pose.jiggle = dial;
     EXPECT_TRUE(arm.build());
     ArmRun run(arm, shake(arm));
-    CarryScratch scratch;
     VectorArray placed = run.state.position;
     double most = 0;
     for (int f = 1; f <= 40; ++f) {
       run.advance(1);
-      arm.skin->placeAll(run.at(f * ArmRun::kFrame_s), scratch, placed);
+      arm.skin->attachment().makePlacer()->placeAll(run.at(f * ArmRun::kFrame_s), placed);
       for (std::size_t k = 0; k < arm.skin->pointCount(); ++k)
         most = std::max<double>(most, std::abs(placed.y[k] - run.state.position.y[k]));
     }
@@ -310,7 +306,7 @@ TEST(PosedSkin, DialsDifferByRegionJointAndPoint) {
   EXPECT_LT(half, everywhere);
   none.skinDef.pose.jiggle = 0;
   EXPECT_EQ(jiggleOf(none), 0u);
-  painted.skinDef.points.emplace().jiggle.assign(painted.rig.points_m.size(), 0.f);
+  painted.skinDef.points.emplace().jiggle.edit().assign(painted.rig.points_m.size(), 0.f);
   EXPECT_EQ(jiggleOf(painted), 0u);
 }
 
@@ -368,7 +364,7 @@ TEST(MeshSkinFaults, RefuseRegionsByCoordinatesThatAMeshLacks) {
 TEST(MeshSkinFaults, CountTheValuesOfPointLists) {
   MeshArm arm;
   arm.skinDef.points.emplace();
-  arm.skinDef.points->fat.assign(3, 0.01f);
+  arm.skinDef.points->fat.edit().assign(3, 0.01f);
   expectError(arm, "/skin/points/" + std::string(info(SkinQuantity::fat).name),
               "found 3 values, expected " + std::to_string(arm.rig.points_m.size()));
 }
@@ -376,7 +372,7 @@ TEST(MeshSkinFaults, CountTheValuesOfPointLists) {
 TEST(MeshSkinFaults, RefuseAnchorsOfTheirOwn) {
   MeshArm arm;
   arm.skinDef.points.emplace();
-  arm.skinDef.points->anchor.resize(arm.rig.points_m.size());
+  arm.skinDef.points->anchor.edit().resize(arm.rig.points_m.size());
   expectError(arm, "/skin/points", "found anchors");
 }
 

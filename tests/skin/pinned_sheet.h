@@ -1,6 +1,7 @@
 #pragma once
 
-#include <fascia/skin/grid/leapfrog.h>
+#include <fascia/skin/grid/grid_stepper.h>
+#include <fascia/skin/point/leapfrog.h>
 
 #include "grids.h"
 

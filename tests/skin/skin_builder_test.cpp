@@ -9,7 +9,7 @@ using test::Body;
 using Mode = SkinRegionDef::Edit::Mode;
 
 float valueAt(const Body& body, SkinQuantity quantity, int i, int j) {
-  return body.skin->quantities()[quantity][body.skin->layout().at(i, j)];
+  return body.skin->quantities()[quantity][body.skin->grid()->layout().at(i, j)];
 }
 
 TEST(SkinBuilder, SpreadsMassAndStiffnessPerAreaAtEveryResolution) {
@@ -32,23 +32,23 @@ TEST(SkinBuilder, FixesItsEndRowsToTheirJoints) {
   Body body;
   ASSERT_TRUE(body.build());
   const Skin& skin = *body.skin;
-  ASSERT_EQ(skin.fixed().size(), 2u * 16);
-  for (const Skin::Fixed& f : skin.fixed()) {
+  ASSERT_EQ(skin.grid()->fixed().size(), 2u * 16);
+  for (const GridAttachment::Fixed& f : skin.grid()->fixed()) {
     EXPECT_EQ(skin.points().free[f.point], 0);
     const Vec3 world = body.posedSkeleton.joint_world[f.joint.index()].point(f.position_joint);
     EXPECT_LT((world - test::at(skin.restPosition(), f.point)).norm(), 1e-6);
   }
-  EXPECT_EQ(skin.points().free[skin.layout().at(3, 1)], 1);
+  EXPECT_EQ(skin.points().free[skin.grid()->layout().at(3, 1)], 1);
 }
 
 TEST(SkinBuilder, AnchorsEveryFreePointOnTheSurfaceBelowIt) {
   Body body;
   ASSERT_TRUE(body.build());
   const Skin& skin = *body.skin;
-  ASSERT_EQ(skin.anchors().anchors().size(), 16u * 22);
-  VectorArray normal(skin.layout().storage());
-  gridNormals(skin.layout(), skin.restPosition(), 0, skin.rows(), normal);
-  for (const TissueAnchors::Anchor& a : skin.anchors().anchors()) {
+  ASSERT_EQ(skin.grid()->anchors().anchors().size(), 16u * 22);
+  VectorArray normal(skin.grid()->layout().storage());
+  gridNormals(skin.grid()->layout(), skin.restPosition(), 0, skin.grid()->rows(), normal);
+  for (const TissueAnchors::Anchor& a : skin.grid()->anchors().anchors()) {
     const Vec3 inner = body.posedFlesh.worldFromMaterial(a.solid, a.material);
     EXPECT_NEAR(body.distanceTo(a.solid, inner), 0, 2e-4);
     // The strand is as long at rest as it was when it was attached.
@@ -64,10 +64,10 @@ TEST(TissueAnchors, MoveWithTheirJointAndStayOnTheSurface) {
   Posture posture = body.skeleton.restPosture();
   posture.values = {0.4, 0.9, -1.1};
   body.pose(posture);
-  VectorArray scratch, anchor(body.skin->layout().storage());
-  body.skin->anchors().place(body.posedFlesh, scratch, anchor);
+  VectorArray scratch, anchor(body.skin->grid()->layout().storage());
+  body.skin->grid()->anchors().place(body.posedFlesh, scratch, anchor);
   int onHead = 0;
-  for (const TissueAnchors::Anchor& a : body.skin->anchors().anchors()) {
+  for (const TissueAnchors::Anchor& a : body.skin->grid()->anchors().anchors()) {
     const Vec3 inner = test::at(anchor, a.point);
     EXPECT_NEAR(body.distanceTo(a.solid, inner), 0, 2e-4);
     const Transform& joint = body.posedSkeleton.joint_world[body.flesh.joint(a.solid).index()];
@@ -121,7 +121,7 @@ TEST(SkinRegion, CanBeAllPointsOfASolid) {
   ASSERT_TRUE(body.build());
   const SolidId head = body.flesh.find("head");
   int changed = 0;
-  for (const TissueAnchors::Anchor& a : body.skin->anchors().anchors()) {
+  for (const TissueAnchors::Anchor& a : body.skin->grid()->anchors().anchors()) {
     const float drag = body.skin->quantities()[SkinQuantity::drag][a.point];
     EXPECT_FLOAT_EQ(drag, a.solid == head ? 77 : 4);
     changed += a.solid == head;
@@ -138,7 +138,7 @@ TEST(SkinBrush, AddsAGaussianAroundAPointOfAJoint) {
   ASSERT_TRUE(body.build());
   const Vec3 center(0, 1.65, 0.16);
   double largest = 0;
-  test::forEachPoint(body.skin->layout(), [&](int, int, std::size_t k) {
+  test::forEachPoint(body.skin->grid()->layout(), [&](int, int, std::size_t k) {
     const double r = (test::at(body.skin->restPosition(), k) - center).norm() / 0.08;
     const double expected = 0.01 + 0.03 * std::exp(-0.5 * r * r);
     const double fat = body.skin->quantities()[SkinQuantity::fat][k];
@@ -154,7 +154,7 @@ TEST(SkinBrush, NeverMakesFatNegative) {
   brush.joint = "hip", brush.radius_m = 1, brush.amount = -0.5;
   body.skinDef.brushes = {brush};
   ASSERT_TRUE(body.build());
-  test::forEachPoint(body.skin->layout(), [&](int i, int j, std::size_t) {
+  test::forEachPoint(body.skin->grid()->layout(), [&](int i, int j, std::size_t) {
     EXPECT_EQ(valueAt(body, SkinQuantity::fat, i, j), 0);
   });
 }
@@ -163,9 +163,9 @@ TEST(SkinAnchor, TiesThePointNearestToItsCoordinatesToASolid) {
   Body body;
   body.skinDef.anchors = {{0.5, 0.5, "head", Vec3(0, 0, 3)}};
   ASSERT_TRUE(body.build());
-  const std::size_t k = body.skin->layout().at(8, 12);  // round(0.5 · 23) = 12
+  const std::size_t k = body.skin->grid()->layout().at(8, 12);  // round(0.5 · 23) = 12
   int found = 0;
-  for (const TissueAnchors::Anchor& a : body.skin->anchors().anchors()) {
+  for (const TissueAnchors::Anchor& a : body.skin->grid()->anchors().anchors()) {
     if (a.point != k) continue;
     ++found;
     EXPECT_EQ(a.solid, body.flesh.find("head"));
@@ -179,7 +179,8 @@ TEST(SkinPoints, ReplaceDefaultsPointByPointAndAreResampledToOtherGrids) {
   SkinPointsDef points;
   points.columns = 16, points.rows = 24;
   for (int j = 0; j < 24; ++j)
-    for (int i = 0; i < 16; ++i) points.fat.push_back(0.01f + 0.001f * static_cast<float>(j));
+    for (int i = 0; i < 16; ++i)
+      points.fat.edit().push_back(0.01f + 0.001f * static_cast<float>(j));
   body.skinDef.points = points;
   ASSERT_TRUE(body.build());
   EXPECT_FLOAT_EQ(valueAt(body, SkinQuantity::fat, 5, 17), 0.027f);
@@ -195,24 +196,25 @@ TEST(SkinPoints, SavedRestShapeAndAnchorsComeBackExactly) {
   const Skin& skin = *body.skin;
   SkinPointsDef saved;
   saved.columns = 16, saved.rows = 24;
-  saved.anchor_solid.assign(skin.pointCount(), -1);
-  saved.anchor.resize(skin.pointCount());
+  saved.anchor_solid.edit().assign(skin.pointCount(), -1);
+  saved.anchor.edit().resize(skin.pointCount());
   for (std::size_t p = 0; p < skin.pointCount(); ++p) {
     const Vec3 r = test::at(skin.restPosition(), skin.storageIndex(p));
-    saved.rest_position_m.push_back(
+    saved.rest_position_m.edit().push_back(
         {static_cast<float>(r.x()), static_cast<float>(r.y()), static_cast<float>(r.z())});
-    for (const TissueAnchors::Anchor& a : skin.anchors().anchors()) {
+    for (const TissueAnchors::Anchor& a : skin.grid()->anchors().anchors()) {
       if (a.point != skin.storageIndex(p)) continue;
-      saved.anchor_solid[p] = a.solid.value;
+      saved.anchor_solid.edit()[p] = a.solid.value;
       for (std::size_t c = 0; c < 3; ++c)
-        saved.anchor[p][c] = static_cast<float>(a.material[static_cast<Eigen::Index>(c)]);
+        saved.anchor.edit()[p][c] = static_cast<float>(a.material[static_cast<Eigen::Index>(c)]);
     }
   }
   Body again;
   again.skinDef.points = saved;
   ASSERT_TRUE(again.build());
-  ASSERT_EQ(again.skin->anchors().anchors().size(), skin.anchors().anchors().size());
-  test::forEachPoint(skin.layout(), [&](int, int, std::size_t k) {
+  ASSERT_EQ(again.skin->grid()->anchors().anchors().size(),
+            skin.grid()->anchors().anchors().size());
+  test::forEachPoint(skin.grid()->layout(), [&](int, int, std::size_t k) {
     EXPECT_EQ(test::at(skin.restPosition(), k), test::at(again.skin->restPosition(), k));
     EXPECT_NEAR(skin.points().tissueRestLength[k], again.skin->points().tissueRestLength[k], 1e-6);
   });

@@ -79,28 +79,28 @@ std::vector<Fault> faults() {
       {"/skin/points/fat_m",
        [](SkinDef& d) {
          d.points = savedGrid(8, 8);
-         d.points->fat.assign(63, 0.1f);
+         d.points->fat.edit().assign(63, 0.1f);
        }},
       {"/skin/points/density_kg_per_m2",
        [](SkinDef& d) {
          d.points = savedGrid(8, 8);
-         d.points->density.assign(64, std::numeric_limits<float>::quiet_NaN());
+         d.points->density.edit().assign(64, std::numeric_limits<float>::quiet_NaN());
        }},
       {"/skin/points/anchor_solid",
        [](SkinDef& d) {
          d.points = savedGrid(8, 8);
-         d.points->anchor_solid.assign(64, 99);
-         d.points->anchor.resize(64);
+         d.points->anchor_solid.edit().assign(64, 99);
+         d.points->anchor.edit().resize(64);
        }},
       {"/skin/points/anchor",
        [](SkinDef& d) {
          d.points = savedGrid(8, 8);
-         d.points->anchor_solid.assign(64, 0);
+         d.points->anchor_solid.edit().assign(64, 0);
        }},
       {"/skin/points",
        [](SkinDef& d) {
          d.points = savedGrid(8, 8);
-         d.points->rest_position_m.assign(64, {0, HUGE_VALF, 0});
+         d.points->rest_position_m.edit().assign(64, {0, HUGE_VALF, 0});
        }},
   };
 }

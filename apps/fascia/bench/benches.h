@@ -13,6 +13,7 @@ void addPaperBench(CLI::App& group, Console& console);
 void addScalingBench(CLI::App& group, Console& console);
 void addDeformationBench(CLI::App& group, Console& console);
 void addReflexesBench(CLI::App& group, Console& console);
+void addEditingBench(CLI::App& group, Console& console);
 void addDrawingBench(CLI::App& group, Console& console);
 void addPeersBench(CLI::App& group, Console& console);  // only where Bullet was found
 

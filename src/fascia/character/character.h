@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fascia/character/character_def.h>
@@ -21,7 +22,24 @@ struct BuildOptions {
   double jiggle = -1;         // of an imported mesh, in [0, 1]; negative = as in the file
 };
 
-// A constant, validated character: skeleton, flesh, skin and motions ready to run.
+// The longest piece of a frame that is simulated at once.
+inline constexpr double kLongestPiece_s = 1.0 / 12;
+
+// What a character is made of. Each part is constant and shared with the characters that were
+// edited from this one and have not changed it.
+struct CharacterParts {
+  std::shared_ptr<const CharacterDef> def;  // with the build options in it
+  double interval_s = 0;                    // the only build option that no definition has
+  std::shared_ptr<const Skeleton> skeleton;
+  std::shared_ptr<const Flesh> flesh, ornaments;
+  std::shared_ptr<const SoftFlesh> softFlesh;  // nullptr: no solid is soft
+  std::shared_ptr<const Skin> skin;            // nullptr: none
+  std::vector<std::shared_ptr<const BoundClip>> clips;
+  std::vector<Issue> warnings;
+};
+
+// A constant, validated character: skeleton, flesh, skin and motions ready to run. Copies are
+// cheap: they share all parts.
 class Character {
  public:
   // Throws Error with all faults of `def` (JSON pointers, no file or line).
@@ -29,35 +47,37 @@ class Character {
 
   // What stops nothing but is hardly meant: keys that are never met, settings without effect. JSON
   // pointers; who reads the file adds its name and lines.
-  const std::vector<Issue>& warnings() const { return warnings_; }
-  void setWarnings(std::vector<Issue> warnings) { warnings_ = std::move(warnings); }
+  const std::vector<Issue>& warnings() const { return parts_.warnings; }
+  void setWarnings(std::vector<Issue> warnings) { parts_.warnings = std::move(warnings); }
 
-  const CharacterDef& def() const { return def_; }
-  const Skeleton& skeleton() const { return skeleton_; }
-  const Flesh& flesh() const { return flesh_; }
-  const Flesh& ornaments() const { return ornaments_; }  // rigid: seen, but not felt by the skin
-  const Skin* skin() const { return skin_.get(); }       // nullptr: a character without skin
+  // The character of another definition, best one made from def(): builds the parts whose slices
+  // differ, and shares the rest with this one. The rest shape of a skin follows moved joints,
+  // moved and resized solids and fat; it is wrapped anew only where solids come, go or change
+  // their shapes, or where the skin's ends, grid or cling do. See editing.h for a state that is to
+  // go on. Throws as the constructor does, and then nothing has changed.
+  Character edited(const CharacterDef& def) const;
+
+  const CharacterParts& parts() const { return parts_; }
+  const CharacterDef& def() const { return *parts_.def; }
+  const Skeleton& skeleton() const { return *parts_.skeleton; }
+  const Flesh& flesh() const { return *parts_.flesh; }
+  // Rigid: seen, but not felt by the skin.
+  const Flesh& ornaments() const { return *parts_.ornaments; }
+  const Skin* skin() const { return parts_.skin.get(); }  // nullptr: a character without skin
   // Solids of the flesh that are deformable bodies; nullptr: none.
-  const std::shared_ptr<const SoftFlesh>& softFlesh() const { return softFlesh_; }
-  std::size_t motionCount() const { return clips_.size(); }
-  const BoundClip& motion(std::size_t i) const { return clips_[i]; }
+  const std::shared_ptr<const SoftFlesh>& softFlesh() const { return parts_.softFlesh; }
+  std::size_t motionCount() const { return parts_.clips.size(); }
+  const BoundClip& motion(std::size_t i) const { return *parts_.clips[i]; }
   // Index of a motion by name; empty name = the first; -1 = none of that name.
   int findMotion(std::string_view name) const;
-  // Plays a motion; -1: the rest posture. The character must outlive it and stay where it is.
+  // Plays a motion; -1: the rest posture. A character with these parts must outlive it: one that
+  // was edited needs a source of its own.
   ClipSource source(int motion) const;
 
  private:
-  void bindRigMotions(Diagnostics& diagnostics);
-  void buildSoftFlesh(Diagnostics& diagnostics);
+  explicit Character(CharacterParts parts) : parts_(std::move(parts)) {}
 
-  CharacterDef def_;
-  Skeleton skeleton_;
-  Flesh flesh_, ornaments_;
-  std::shared_ptr<const SoftFlesh> softFlesh_;
-  std::unique_ptr<const Skin> skin_;
-  std::vector<BoundClip> clips_;
-  BoundClip rest_;  // without tracks
-  std::vector<Issue> warnings_;
+  CharacterParts parts_;
 };
 
 // What changes over time: a plain value that can be copied, hashed, saved and rewound.
@@ -69,6 +89,9 @@ struct CharacterState {
   LayeredFlesh flesh;
   PosedFlesh ornaments;
   SkinState skin;
+  // Parameters of solids that are set from outside, in every frame anew if need be: they count more
+  // than the source's and the drivers'. Those that the flesh lacks are ignored.
+  std::vector<Flesh::ParameterOverride> held;
   // Scratch memory, not part of the state's meaning; a copy starts with none.
   SkinWorkspace workspace;
   SoftWorkspace softWorkspace;
@@ -97,8 +120,9 @@ class Surroundings {
 };
 
 // One frame: source → skeleton → flesh → soft solids → skin. dt_s > 0; long frames are divided.
-// The source is asked for times of this frame, in any order. Never throws, allocates nothing after
-// the first calls.
+// The source is asked for times of this frame, in any order. Throws Error if the state is of
+// another character (see requireFits in editing.h) and has then changed nothing; else never.
+// Allocates nothing after the first calls.
 void advance(const Character& character, const PostureSource& source, double dt_s,
              CharacterState& state, SkinStats& stats, Surroundings* surroundings = nullptr);
 

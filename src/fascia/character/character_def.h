@@ -10,7 +10,7 @@
 #include <fascia/motion/motion.h>
 #include <fascia/rig/rigged_model.h>
 #include <fascia/skeleton/skeleton.h>
-#include <fascia/skin/skin_def.h>
+#include <fascia/skin/def/skin_def.h>
 
 namespace fascia {
 
@@ -29,6 +29,7 @@ struct SimulationDef {
   double correction_tolerance_m = 0.01;  // ε_c
   Vec3 gravity_m_per_s2{0, -9.81, 0};
   double settle_s = 0.5;
+  bool operator==(const SimulationDef&) const = default;
 };
 constexpr auto tunables(const SimulationDef*) {
   using S = SimulationDef;
@@ -59,6 +60,7 @@ struct RigDef {
   std::string file;  // glTF beside the character file
   double scale = 1;
   std::shared_ptr<const RiggedModel> model;  // read from the file; not saved
+  bool operator==(const RigDef&) const = default;
 };
 constexpr auto tunables(const RigDef*) {
   return std::tuple{tunable(&RigDef::scale, "scale", "", {1e-6, 1e6},
@@ -77,6 +79,7 @@ struct CharacterDef {
   std::vector<MotionDef> motions;
   SimulationDef simulation;
   std::string folder;  // where the file lies; relative paths (textures) start here. Not saved.
+  bool operator==(const CharacterDef&) const = default;
 };
 
 }  // namespace fascia

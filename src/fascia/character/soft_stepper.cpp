@@ -28,6 +28,7 @@ constexpr double kLeastVolume = 0.05;
 
 SoftStepper::SoftStepper(std::shared_ptr<const SoftFlesh> flesh, const Vec3& gravity_m_per_s2)
     : flesh_(std::move(flesh)),
+      gravity_m_per_s2_(gravity_m_per_s2),
       system_(flesh_->model(), {.gravity_m_per_s2 = gravity_m_per_s2}),
       stepper_(system_, {.tolerance = 1e-8}) {
   for (std::size_t p = 0; p < flesh_->parts().size(); ++p) {
@@ -153,7 +154,7 @@ const OdeState& SoftStepper::at(double time_s) {
 
 SoftStepper& SoftWorkspace::stepper(const std::shared_ptr<const SoftFlesh>& flesh,
                                     const Vec3& gravity_m_per_s2) {
-  if (!stepper_ || stepper_->flesh() != flesh.get())
+  if (!stepper_ || !stepper_->isFor(*flesh, gravity_m_per_s2))
     stepper_ = std::make_unique<SoftStepper>(flesh, gravity_m_per_s2);
   return *stepper_;
 }

@@ -32,7 +32,11 @@ class SoftStepper {
   const OdeState& at(double time_s);
 
   const BodyStepperStats& stats() const { return stepper_.stats(); }
-  const SoftFlesh* flesh() const { return flesh_.get(); }
+  // Whether it steps these bodies in this gravity. They are kept alive, so that no others can be
+  // where they are.
+  bool isFor(const SoftFlesh& flesh, const Vec3& gravity_m_per_s2) const {
+    return flesh_.get() == &flesh && gravity_m_per_s2_ == gravity_m_per_s2;
+  }
 
  private:
   // Where a body's frame is at one end of a substep.
@@ -47,6 +51,7 @@ class SoftStepper {
   void keep(const OdeState& bodies);
 
   std::shared_ptr<const SoftFlesh> flesh_;
+  Vec3 gravity_m_per_s2_;
   BodySystem system_;
   BodyStepper stepper_;
   std::vector<Carrier> from_, to_;  // per part, of this substep

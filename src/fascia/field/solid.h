@@ -27,10 +27,12 @@ struct SolidDef {
   struct Step {
     std::string type;                // a Deformation's name
     std::vector<double> parameters;  // in the order of its parameters(); missing = standard
+    bool operator==(const Step&) const = default;
   };
   std::string shape = "sphere";
   std::vector<double> parameters;  // in the order of Shape::parameters(); missing = standard
   std::vector<Step> deformations;  // at most kMaxDeformations
+  bool operator==(const SolidDef&) const = default;
 };
 
 // A SolidDef made ready: all parameters present in one flat array that keys and drivers write.

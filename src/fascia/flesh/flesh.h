@@ -20,6 +20,7 @@ struct DriverDef {
   struct Point {
     double jointValue;  // metre or radian
     double parameter;   // the parameter's own unit
+    bool operator==(const Point&) const = default;
   };
   std::string parameter;  // path, e.g. "radius_m", "taper.amount"
   std::string joint;
@@ -27,10 +28,12 @@ struct DriverDef {
   std::vector<Point> points;  // increasing jointValue, two to kMost; constant outside
   static constexpr std::size_t kMost = 1024;
   Interpolation interpolation = Interpolation::smooth;
+  bool operator==(const DriverDef&) const = default;
 };
 
 struct Color {
   float r = 0.8f, g = 0.8f, b = 0.8f;  // linear is not meant: sRGB, each in [0, 1]
+  bool operator==(const Color&) const = default;
 };
 
 // A solid that is a linear deformable body instead of a rigid one: it sags, lags and jiggles
@@ -40,6 +43,7 @@ struct SoftSolidDef : BodyMaterialDef {
   BodyBasisDef basis;
   // In the solid's frame, within its bounds; none: some at the end that is nearest to the joint.
   std::vector<Vec3> held_m;
+  bool operator==(const SoftSolidDef&) const = default;
 };
 inline constexpr std::size_t kMostHeldPoints = 64;
 
@@ -53,6 +57,7 @@ struct FleshSolidDef {
   std::vector<DriverDef> drivers;
   Color color{0.72f, 0.28f, 0.26f};
   std::optional<SoftSolidDef> soft;  // not of ornaments, and not with drivers
+  bool operator==(const FleshSolidDef&) const = default;
 };
 constexpr auto tunables(const FleshSolidDef*) {
   using S = FleshSolidDef;
@@ -65,6 +70,7 @@ inline constexpr std::size_t kMostSolids = 4096;
 
 struct FleshDef {
   std::vector<FleshSolidDef> solids;
+  bool operator==(const FleshDef&) const = default;
 };
 
 class Flesh;

@@ -37,6 +37,7 @@ struct BodyMaterial {
   double power_damping_s_per_J = 0;  // k_d
   // Force against the motion in proportion to the mass.
   double drag_per_s = 0;
+  bool operator==(const BodyMaterial&) const = default;
 };
 constexpr auto tunables(const BodyMaterial*) {
   using M = BodyMaterial;
@@ -55,6 +56,7 @@ constexpr auto tunables(const BodyMaterial*) {
 // What a body is made of, as files say it.
 struct BodyMaterialDef : BodyMaterial {
   double density_kg_per_m3 = 1000;
+  bool operator==(const BodyMaterialDef&) const = default;
 };
 constexpr auto tunables(const BodyMaterialDef*) {
   return std::tuple_cat(

@@ -31,6 +31,7 @@ struct Transform {
   Transform inverse() const {
     return {rotation.transpose(), -(rotation.transpose() * translation_m)};
   }
+  bool operator==(const Transform&) const = default;
 };
 
 // Velocity of a rigid body: of its origin's point, and about it.

@@ -15,6 +15,7 @@ struct Key {
   double time_s = 0;
   double value = 0;  // metre or radian; a solid's parameter: its own unit
   double tension = 0, continuity = 0, bias = 0;
+  bool operator==(const Key&) const = default;
 };
 constexpr auto tunables(const Key*) {
   return std::tuple{
@@ -35,6 +36,7 @@ struct TrackDef {
   std::string name;       // of the joint or solid
   std::string channel;    // "tx"…"rz", or the parameter's name, e.g. "radius_m"
   std::vector<Key> keys;  // times increase; at least one
+  bool operator==(const TrackDef&) const = default;
 };
 
 struct MotionDef {
@@ -42,6 +44,7 @@ struct MotionDef {
   double duration_s = 0;
   bool loop = false;             // every duration; tangents wrap. See KeySpline.
   std::vector<TrackDef> tracks;  // at most kMostTracks
+  bool operator==(const MotionDef&) const = default;
 };
 constexpr auto tunables(const MotionDef*) {
   return std::tuple{

@@ -24,6 +24,7 @@ struct DofDef {
   Dof dof = Dof::rx;
   double min = -1e9, max = 1e9;  // metre or radian; these two stand for "no limit"
   double rest = 0;               // value in the rest posture, within [min, max]
+  bool operator==(const DofDef&) const = default;
 };
 // Limits, and values at rest and of keys.
 inline constexpr TunableInfo kDofAngle{
@@ -42,6 +43,7 @@ struct JointDef {
   Vec3 offset_m = Vec3::Zero();
   Vec3 orientation_rad = Vec3::Zero();  // intrinsic Rz·Ry·Rx
   std::vector<DofDef> dofs;             // any subset of the six
+  bool operator==(const JointDef&) const = default;
 };
 constexpr auto tunables(const JointDef*) {
   return std::tuple{
@@ -54,6 +56,7 @@ inline constexpr std::size_t kMostJoints = 1024;
 
 struct SkeletonDef {
   std::vector<JointDef> joints;
+  bool operator==(const SkeletonDef&) const = default;
 };
 
 // A joint's own turn as a rotation, where three angles would lose a direction (gimbal lock).

@@ -2,7 +2,6 @@
 
 #include <fascia/math/ode/adaptive_stepper.h>
 #include <fascia/math/ode/system.h>
-#include <fascia/skin/contact/skin_contact.h>
 #include <fascia/skin/skin.h>
 
 namespace fascia {
@@ -58,7 +57,7 @@ class OdeSkin final : public SecondOrderSystem {
   Mat3 dampingOf(const Point& point, const Strand& strand) const;
   void prepareDamping(double t_s, std::span<const double> r);
 
-  const Skin& skin_;
+  Skin skin_;
   AdaptiveStepper stepper_;
   std::vector<double> inverseMass_;
   std::vector<Point> points_;

@@ -14,14 +14,15 @@
 #include <fascia/pose/jiggle_state.h>
 #include <fascia/rig/rigged_model.h>
 #include <fascia/skin/contact/fat_pressure.h>
-#include <fascia/skin/grid/grid_topology.h>
-#include <fascia/skin/grid/leapfrog.h>
+#include <fascia/skin/contact/skin_contact.h>
+#include <fascia/skin/def/skin_def.h>
+#include <fascia/skin/point/leapfrog.h>
 #include <fascia/skin/point/point_kernels.h>
 #include <fascia/skin/point/point_model.h>
 #include <fascia/skin/point/quantities.h>
-#include <fascia/skin/point/tissue.h>
+#include <fascia/skin/point/skin_attachment.h>
+#include <fascia/skin/point/skin_topology.h>
 #include <fascia/skin/self_contact/self_contact.h>
-#include <fascia/skin/skin_def.h>
 
 namespace fascia {
 
@@ -51,105 +52,93 @@ struct SkinBase {
   const RiggedModel* rig = nullptr;  // the skin is this mesh; nullptr: a grid around the flesh
 };
 
-// The flesh and the joints at one moment.
-struct SkinPose {
-  const Field* field;
-  std::span<const Transform> joints;
+struct GridSkin;
+struct GridRest;
+struct RiggedSkin;
+class Skin;
+
+// The rest shape, and what follows from it alone.
+struct SkinShape {
+  VectorArray rest;   // storage order, padding filled
+  double size_m = 0;  // diagonal of its box
+  std::vector<PointBlock> blocks;
+  std::vector<std::size_t> fixedPoints;  // storage indices
 };
 
-// See rigged_skin.h.
-struct CarryScratch;
-struct RiggedSkin;
+// What a skin is made of: each part is constant and shared with the skins that were edited from it.
+struct SkinParts {
+  std::shared_ptr<const SkinShape> shape;
+  std::shared_ptr<const SkinQuantities> quantities;
+  std::shared_ptr<const SkinTopology> topology;      // how points hang together
+  std::shared_ptr<const SkinAttachment> attachment;  // what carries them
+  std::shared_ptr<const PointModel> points;
+  ContactResponse contactResponse;
+  double defaultStep_s = 0;
+  std::shared_ptr<const SelfContactModel> selfContact;
+  std::shared_ptr<const FatPressureModel> fatPressure;
+  std::shared_ptr<const Skin> coarse;
+  // Of one kind of skin only:
+  std::shared_ptr<const GridSkin> grid;
+  std::shared_ptr<const GridRest> gridRest;
+  std::shared_ptr<const RiggedSkin> rigged;
+  bool simulated = true;
+};
 
 // A constant elastic skin: geometry of rest, material, anchors (Turner & Gobbetti 1998,
-// §3 and §4.1).
+// §3 and §4.1). Copies are cheap: they share all parts.
 class Skin {
  public:
   // Reports every fault of `def` with pointers below `pointer`; with errors the result must not be
-  // used. A grid shrink-wraps the flesh unless `def.points` brings a rest shape.
+  // used. A grid shrink-wraps the flesh unless `def.points` brings a rest shape. Parts of the skin
+  // that it was edited from are taken over where nothing that they are made of has changed; the
+  // rest shape of a grid then follows solids and joints instead of being wrapped anew.
   Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
-       const std::string& pointer, Diagnostics& diagnostics);
+       const std::string& pointer, Diagnostics& diagnostics, const Skin* before = nullptr);
+  Skin(const SkinSettings& settings, SkinParts parts);
 
-  const SkinTopology& topology() const { return *topology_; }
-  std::size_t pointCount() const { return topology_->pointCount(); }
-  std::size_t storageIndex(std::size_t p) const { return topology_->storageIndex(p); }
+  // The same for every copy of a skin, and for no other skin of this process.
+  std::uint64_t id() const { return id_; }
+  const SkinParts& parts() const { return parts_; }
 
-  // Of a grid skin only (isGrid); point p = j * columns + i.
-  bool isGrid() const { return grid_ != nullptr; }
-  const GridLayout& layout() const { return grid_->layout(); }
-  int columns() const { return layout().columns; }
-  int rows() const { return layout().rows; }
-  const ElasticGrid& elastic() const { return grid_->elastic(); }
-  const Bending& bending() const { return grid_->bending(); }
+  const SkinTopology& topology() const { return *parts_.topology; }
+  const SkinAttachment& attachment() const { return *parts_.attachment; }
+  std::unique_ptr<SkinContact> makeContact() const;  // what keeps its points out
+  std::size_t pointCount() const { return topology().pointCount(); }
+  std::size_t storageIndex(std::size_t p) const { return topology().storageIndex(p); }
+
+  // What only one kind has; nullptr: it is the other kind. See grid_skin.h and rigged_skin.h.
+  const GridSkin* grid() const { return parts_.grid.get(); }
+  const RiggedSkin* rigged() const { return parts_.rigged.get(); }
 
   const SkinSettings& settings() const { return settings_; }
-  const PointModel& points() const { return points_; }
-  const ContactResponse& contactResponse() const { return contactResponse_; }
-  const VectorArray& restPosition() const { return rest_; }
-  const SkinQuantities& quantities() const { return quantities_; }
-  std::span<const PointBlock> blocks() const { return blocks_; }
-  double defaultStep_s() const { return defaultStep_s_; }
+  const PointModel& points() const { return *parts_.points; }
+  const ContactResponse& contactResponse() const { return parts_.contactResponse; }
+  const VectorArray& restPosition() const { return parts_.shape->rest; }
+  const SkinQuantities& quantities() const { return *parts_.quantities; }
+  std::span<const PointBlock> blocks() const { return parts_.shape->blocks; }
+  std::span<const std::size_t> fixedPoints() const { return parts_.shape->fixedPoints; }
+  double defaultStep_s() const { return parts_.defaultStep_s; }
   // The same skin at a resolution whose waves a step of about a millisecond resolves; nullptr if
   // this one's does. See leapfrog.h.
-  const Skin* coarse() const { return coarse_.get(); }
-  double size_m() const { return size_m_; }  // diagonal of the rest shape's box
-  const SelfContactModel* selfContact() const { return selfContact_.get(); }  // may be nullptr
-  const FatPressureModel* fatPressure() const { return fatPressure_.get(); }  // may be nullptr
+  const Skin* coarse() const { return parts_.coarse.get(); }
+  double size_m() const { return parts_.shape->size_m; }  // diagonal of the rest shape's box
+  const SelfContactModel* selfContact() const { return parts_.selfContact.get(); }  // or nullptr
+  const FatPressureModel* fatPressure() const { return parts_.fatPressure.get(); }  // or nullptr
 
-  // Of an imported mesh only.
-  const RiggedSkin* rigged() const { return rigged_.get(); }
   // Whether it is stepped through time; else it follows from a pose, but for its jiggle.
-  bool isSimulated() const { return simulated_; }
-
-  // The inner ends of a grid's strands, in its solids' matter.
-  const TissueAnchors& anchors() const { return anchors_; }
-  // Points of a grid that are fixed to a joint: the two end rows.
-  struct Fixed {
-    std::size_t point;
-    JointId joint;
-    Vec3 position_joint;
-  };
-  const std::vector<Fixed>& fixed() const { return fixed_; }
-
-  // Where a pose carries things. Each writes the entries of the points meant, and no others.
-  void placeAnchors(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
-  // Of a mesh: as the call of another of these with the same pose and scratch has found it.
-  void placeFixed(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
-  void placeAll(const SkinPose& pose, CarryScratch& scratch, VectorArray& out) const;
-  std::span<const std::size_t> fixedPoints() const { return fixedPoints_; }  // storage indices
+  bool isSimulated() const { return parts_.simulated; }
 
  private:
-  void placeRigged(const SkinPose& pose, CarryScratch& scratch) const;
-  friend class GridSkinBuilder;
-  friend class MeshSkinBuilder;
-  Skin() = default;
-
-  std::shared_ptr<const SkinTopology> topology_;
-  const GridTopology* grid_ = nullptr;  // topology_, if it is one
+  std::uint64_t id_;
   SkinSettings settings_;
-  SkinQuantities quantities_;
-  VectorArray rest_;
-  PointModel points_;
-  ContactResponse contactResponse_;
-  std::vector<PointBlock> blocks_;
-  double defaultStep_s_ = 0, size_m_ = 0;
-  std::vector<std::size_t> fixedPoints_;
-  std::shared_ptr<const SelfContactModel> selfContact_;
-  std::shared_ptr<const FatPressureModel> fatPressure_;
-  // A grid's points are carried by solids and joints, a mesh's by its pose function.
-  TissueAnchors anchors_, carriers_;
-  std::vector<Fixed> fixed_;
-  std::shared_ptr<const RiggedSkin> rigged_;
-  bool simulated_ = true;
-  VectorArray sag_;  // of a simulated mesh: how far a point's weight stretches its strand
-  std::shared_ptr<const Skin> coarse_;
+  SkinParts parts_;
 };
 
 // What changes over time; a plain value. Arrays are in storage order, padding filled.
 struct SkinState {
   VectorArray position, velocity;  // world, m and m/s
   PointSurroundings surroundings;  // of the interval that starts now
-  VectorArray carrierVelocity;     // of the coarse surface under each point (see leapfrog.h), m/s
+  VectorArray coarseVelocity;      // of the coarse surface under each point (see leapfrog.h), m/s
   std::vector<SkinState> coarse;   // the coarse skin's state, or none
   std::vector<Transform> joints;   // the pose of the last interval's end
   JiggleState jiggle;              // of an imported mesh that is not simulated
@@ -199,9 +188,9 @@ class SkinWorkspace {
   std::unique_ptr<SkinRun> run_;
 };
 
-// The rest shape carried along by the flesh into a posture: where a simulation starts, and where
+// The rest shape where a pose puts it: where a simulation starts, and where
 // points go that cannot be simulated (a jump, a broken state). Velocities become 0.
-void carrySkin(const Skin& skin, const SkinPose& pose, SkinState& state);
+void placeSkin(const Skin& skin, const SkinPose& pose, SkinState& state);
 
 // Advances from start_s to end_s (at most 1/12 s later). Never fails: see never-explodes in
 // docs/never-explodes.md.

@@ -8,6 +8,9 @@
 namespace fascia {
 namespace {
 
+// Beyond so many radii nothing of a brush is left in a float: exp(-r²/2) is below 1e-49.
+constexpr double kBrushReach = 15;
+
 // 1 inside [low, high], falling to 0 over `feather` outside of it; low > high wraps around.
 double inRange(double x, double low, double high, double feather, bool periodic) {
   const auto outsideBy = [&](double t) {
@@ -81,12 +84,14 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
                    "only u goes around; v runs upwards");
     SolidId solid;
     if (!region.solid.empty()) solid = report.findSolid(where + "/solid", region.solid);
+    std::vector<float> shares;
+    for (const EditPoint& p : points) shares.push_back(shareOf(region, solid, joint, p));
     for (const SkinRegionDef::Edit& edit : region.edits) {
       FloatArray& values = quantities[edit.quantity];
-      for (const EditPoint& p : points) {
-        const double old = values[p.point];
-        values[p.point] =
-            static_cast<float>(old + shareOf(region, solid, joint, p) * (edited(edit, old) - old));
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (shares[i] == 0) continue;
+        const double old = values[points[i].point];
+        values[points[i].point] = static_cast<float>(old + shares[i] * (edited(edit, old) - old));
       }
     }
   }
@@ -102,6 +107,7 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
     FloatArray& values = quantities[brush.quantity];
     for (const EditPoint& p : points) {
       const double r = (pointAt(rest, p.point) - center).norm() / std::max(1e-9, brush.radius_m);
+      if (r > kBrushReach) continue;
       values[p.point] = std::max(
           0.f, values[p.point] + static_cast<float>(brush.amount * std::exp(-0.5 * r * r)));
     }

@@ -1,29 +1,35 @@
 #include <fascia/skin/skin_stepper.h>
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 
 #include <fascia/base/assert.h>
-#include <fascia/skin/mesh/posed_skin_run.h>
+#include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/ode_skin.h>
+#include <fascia/skin/posed_skin_run.h>
 
 namespace fascia {
 namespace {
 
-// The farthest that a joint may turn within one interval: larger, and skin resting on a turning
-// limb stands off by r kTurn²/8; smaller costs contact tests.
+// The farthest that a joint may turn within one interval. Within an interval a point sees the flesh
+// as a plane, so that skin on a limb of radius r that turns by this angle ends up r kTurn_rad²/8
+// too far out. A smaller angle makes more intervals, and every interval tests all contacts anew.
 constexpr double kTurn_rad = 0.12;
 constexpr int kMostIntervals = 8;
-// Steps of a grid that rides on a coarse one: a few relaxations per interval. Longer leaves folds
-// behind in fast motion, shorter costs time in proportion.
+// The step of a fine grid whose large motions are computed on a coarse one. It only has to relax
+// what the coarse grid cannot show. Longer steps leave folds behind in fast motion; the cost is in
+// proportion to the number of steps.
 constexpr double kRidingStep_s = 1.0 / 960;
-// A skin point whose anchor jumps farther than this share of the skin's size within one interval
-// has been teleported with the body, not moved.
+// If an anchor goes farther than this share of the skin's size within one interval, the body has
+// been put somewhere else, and the skin goes there with it instead of being pulled.
 constexpr double kAnchorJump = 0.2;
-// How much farther than its velocity says skin may come towards other skin within an interval.
+// Skin may come this much nearer to other skin within an interval than its velocity says; a share
+// of the skin's size. Contacts within this reach are looked for.
 constexpr float kSelfReach = 0.002f;
-// Points that may slide only so far need no wider one, however hard a body is shaken.
+// The farthest that flesh contacts are looked for where points may only slide so far from their
+// anchors; a share of the skin's size.
 constexpr float kSlidingReach = 0.02f;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
@@ -57,7 +63,10 @@ bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anc
 }  // namespace
 
 SkinStepper::SkinStepper(const Skin& skin)
-    : skin_(&skin), surface_(skin.topology().makeStepper()), contact_(makeContact(skin)) {
+    : skin_(skin),
+      placer_(skin.attachment().makePlacer()),
+      surface_(skin.topology().makeStepper()),
+      contact_(skin.makeContact()) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
   if (skin.fatPressure())
@@ -66,7 +75,7 @@ SkinStepper::SkinStepper(const Skin& skin)
   if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
   if (integrator == "auto" && skin.coarse()) {
     coarse_ = std::make_unique<SkinStepper>(*skin.coarse());
-    prolongation_ = Prolongation(skin.coarse()->layout(), skin.layout());
+    prolongation_ = Prolongation(skin.coarse()->grid()->layout(), skin.grid()->layout());
   }
 }
 
@@ -74,10 +83,12 @@ SkinStepper::~SkinStepper() = default;
 
 void SkinStepper::advance(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
                           SkinStats& stats) {
+  assert(state.position.size() == skin_.topology().storage());
   if (!state.ready) begin(poses.at(start_s), state);
+  assert(state.velocity.size() == skin_.topology().storage());
   const double span = end_s - start_s;
   FASCIA_ASSERT(span > 0, "time goes on");
-  FASCIA_ASSERT(state.position.size() == skin_->topology().storage(), "the state is of this skin");
+  FASCIA_ASSERT(state.position.size() == skin_.topology().storage(), "the state is of this skin");
   const SkinPose end = poses.at(end_s);
   const int intervals = intervalCount(end, span, state);
   for (int i = 0; i < intervals; ++i) {
@@ -100,23 +111,23 @@ int SkinStepper::intervalCount(const SkinPose& end, double span_s, const SkinSta
   }
   const double turn = std::acos(std::clamp(leastCosine, -1.0, 1.0));
   const int forTurn = static_cast<int>(std::ceil(std::min(turn / kTurn_rad, 1.0 * kMostIntervals)));
-  const int forTime = static_cast<int>(std::ceil(span_s / skin_->settings().interval_s - 1e-6));
+  const int forTime = static_cast<int>(std::ceil(span_s / skin_.settings().interval_s - 1e-6));
   return std::max({1, forTurn, forTime});
 }
 
 // Anchors and half spaces for a state that comes from somewhere else.
 void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
-  const std::size_t storage = skin_->topology().storage();
+  const std::size_t storage = skin_.topology().storage();
   state.velocity.resize(storage);
   state.surroundings.resize(storage);
-  skin_->placeAnchors(pose, scratch_, state.surroundings.anchor);
+  placer_->placeAnchors(pose, state.surroundings.anchor);
   SkinStats ignored;
-  settle(pose, skin_->settings().interval_s, state, ignored);
+  settle(pose, skin_.settings().interval_s, state, ignored);
   if (coarse_) {
-    state.coarse.assign(1, resampled(*skin_, state, coarse_->skin()));
+    state.coarse.assign(1, resampled(skin_, state, coarse_->skin()));
     coarse_->begin(pose, state.coarse.front());
-    state.carrierVelocity.resize(storage);
-    state.carrierVelocity.fill(0.f);
+    state.coarseVelocity.resize(storage);
+    state.coarseVelocity.fill(0.f);
   }
   state.ready = true;
 }
@@ -157,21 +168,22 @@ void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinStat
   stats.steps = stepsBefore;  // the fine grid's are counted
 
   Stopwatch watch;
-  coarseVelocity_.resize(coarseStart_.size());
+  coarseGridVelocity_.resize(coarseStart_.size());
   FASCIA_ASSERT(coarse.position.size() == coarseStart_.size(), "the coarse grid keeps its points");
   const auto rate = static_cast<float>(1 / duration_s);
   for (const auto axis : VectorArray::kAxes)
     for (std::size_t k = 0; k < coarseStart_.size(); ++k)
-      (coarseVelocity_.*axis)[k] = ((coarse.position.*axis)[k] - (coarseStart_.*axis)[k]) * rate;
-  prolongation_.apply(coarseVelocity_, carrierNext_);
-  followCarrier(carrierNext_, carried(state), state.carrierVelocity, state.velocity);
+      (coarseGridVelocity_.*axis)[k] =
+          ((coarse.position.*axis)[k] - (coarseStart_.*axis)[k]) * rate;
+  prolongation_.apply(coarseGridVelocity_, coarseNext_);
+  followCoarse(coarseNext_, carryShare(state), state.coarseVelocity, state.velocity);
   watch.lap(stats.other_s);
 }
 
 // The share of its anchor's changes of velocity that each point takes over.
-const FloatArray& SkinStepper::carried(const SkinState& state) {
-  if (!state.starting) return coefficients_.carried;
-  wholly_.assign(skin_->topology().storage(), 1.f);
+const FloatArray& SkinStepper::carryShare(const SkinState& state) {
+  if (!state.starting) return coefficients_.carry;
+  wholly_.assign(skin_.topology().storage(), 1.f);
   return wholly_;
 }
 
@@ -179,45 +191,45 @@ const FloatArray& SkinStepper::carried(const SkinState& state) {
 void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& state,
                            SkinStats& stats) {
   PointSurroundings& around = state.surroundings;
-  skin_->placeAnchors(pose, scratch_, nextAnchor_);
+  placer_->placeAnchors(pose, nextAnchor_);
   const auto rate = static_cast<float>(1 / duration_s);
-  const float way = followAnchors(nextAnchor_, rate, ode_ || coarse_ ? nullptr : &carried(state),
+  const float way = followAnchors(nextAnchor_, rate, ode_ || coarse_ ? nullptr : &carryShare(state),
                                   around, state.velocity);
   state.starting = false;
-  const auto jump = static_cast<float>(kAnchorJump * skin_->size_m());
+  const auto jump = static_cast<float>(kAnchorJump * skin_.size_m());
   if (!(way < jump * jump)) {
     // A posture jump: the skin jumps with the flesh and starts anew from there.
-    carrySkin(*skin_, pose, state);
+    placeSkin(skin_, pose, state);
     around.anchor = nextAnchor_;
     around.anchorVelocity.fill(0.f);
     around.normal.fill(0.f);
-    state.carrierVelocity.fill(0.f);
-    stats.repaired_points += skin_->pointCount();
+    state.coarseVelocity.fill(0.f);
+    stats.repaired_points += skin_.pointCount();
   }
-  skin_->placeFixed(pose, scratch_, target_);
-  for (const std::size_t k : skin_->fixedPoints())
+  placer_->placeFixed(pose, target_);
+  for (const std::size_t k : skin_.fixedPoints())
     for (const auto axis : VectorArray::kAxes)
       (state.velocity.*axis)[k] = ((target_.*axis)[k] - (state.position.*axis)[k]) * rate;
 }
 
 // The number of equal steps for an interval; readies the coefficients for their length.
 int SkinStepper::chooseStep(double duration_s) {
-  const double given = skin_->settings().step_s;
-  const double longest = given > 0 ? given : coarse_ ? kRidingStep_s : skin_->defaultStep_s();
+  const double given = skin_.settings().step_s;
+  const double longest = given > 0 ? given : coarse_ ? kRidingStep_s : skin_.defaultStep_s();
   FASCIA_ASSERT(longest > 0, "a step lasts");
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / longest - 1e-6)));
   const double h = duration_s / steps;
   // Frame times are rounded sums: only a real change of step is worth new coefficients.
   if (std::abs(h - coefficients_.step_s) > 1e-6 * h)
-    prepareStep(skin_->points(), skin_->contactResponse(), h, coefficients_);
+    prepareStep(skin_.points(), skin_.contactResponse(), h, coefficients_);
   return steps;
 }
 
 void SkinStepper::leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats) {
-  StepInputs inputs{&skin_->points(), &coefficients_, &state.surroundings, nullptr, {}};
+  StepInputs inputs{&skin_.points(), &coefficients_, &state.surroundings, nullptr, {}};
   for (int a = 0; a < 3; ++a)
-    inputs.gravity[a] = static_cast<float>(skin_->settings().gravity_m_per_s2[a]);
-  if (skin_->fatPressure())
+    inputs.gravity[a] = static_cast<float>(skin_.settings().gravity_m_per_s2[a]);
+  if (skin_.fatPressure())
     inputs.extraForce = &fatPressure_.press(coefficients_, state.surroundings, duration_s,
                                             state.position, state.velocity);
   surface_->run(inputs, steps, state.position, state.velocity);
@@ -236,40 +248,40 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
     takeFixed(state.position);
     std::swap(state.surroundings.anchor, nextAnchor_);
   } else {
-    skin_->placeFixed(pose, scratch_, state.position);
+    placer_->placeFixed(pose, state.position);
   }
-  if (!skin_->points().slideLimit.empty()) limitSlide(state);
-  skin_->topology().complete(state.position);
+  if (!skin_.points().slideLimit.empty()) limitSlide(state);
+  skin_.topology().complete(state.position);
   // Skin against itself comes before the flesh, which has the last word.
-  if (skin_->selfContact())
-    selfContact_.separate(skin_->points(), kSelfReach * static_cast<float>(skin_->size_m()),
+  if (skin_.selfContact())
+    selfContact_.separate(skin_.points(), kSelfReach * static_cast<float>(skin_.size_m()),
                           state.position, state.velocity, static_cast<float>(duration_s));
   // More than the way that the fastest point goes until the next test.
-  const auto size = static_cast<float>(skin_->size_m());
+  const auto size = static_cast<float>(skin_.size_m());
   const float reach =
       std::min(1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) + 0.005f * size,
-               skin_->points().slideLimit.empty() ? size : kSlidingReach * size);
+               skin_.points().slideLimit.empty() ? size : kSlidingReach * size);
   state.maxSpeed_m_per_s = contact_
-                               ->project(*pose.field, skin_->points(), reach,
-                                         static_cast<float>(skin_->contactResponse().restitution),
+                               ->project(*pose.field, skin_.points(), reach,
+                                         static_cast<float>(skin_.contactResponse().restitution),
                                          state.position, state.velocity, state.surroundings)
                                .maxSpeed_m_per_s;
-  if (skin_->selfContact())
+  if (skin_.selfContact())
     selfContact_.writeHalfSpaces(state.position, state.velocity, static_cast<float>(duration_s),
                                  state.surroundings);
-  skin_->topology().complete(state.position);
+  skin_.topology().complete(state.position);
 }
 
 // Fixed points to where surround() has found that this interval's end carries them.
 void SkinStepper::takeFixed(VectorArray& position) const {
-  for (const std::size_t k : skin_->fixedPoints())
+  for (const std::size_t k : skin_.fixedPoints())
     for (const auto axis : VectorArray::kAxes) (position.*axis)[k] = (target_.*axis)[k];
 }
 
 // Tissue gives way only so far, however hard a body is shaken: points that are farther from their
 // anchors come back to the limit and stop moving away.
 void SkinStepper::limitSlide(SkinState& state) const {
-  const FloatArray& limit = skin_->points().slideLimit;
+  const FloatArray& limit = skin_.points().slideLimit;
   const VectorArray &anchor = state.surroundings.anchor,
                     &anchorVelocity = state.surroundings.anchorVelocity;
   VectorArray &r = state.position, &v = state.velocity;
@@ -293,23 +305,23 @@ void SkinStepper::limitSlide(SkinState& state) const {
 // No state leaves a step with a number that is not finite or a speed that no body has: such points
 // return to where the flesh carries them.
 void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stats) {
-  const auto fastest = static_cast<float>(kFastest_per_s * skin_->size_m());
+  const auto fastest = static_cast<float>(kFastest_per_s * skin_.size_m());
   const VectorArray& anchorVelocity = state.surroundings.anchorVelocity;
   const auto broken = [&](const SkinTopology::Range& r) {
     return anyBroken(state.position, state.velocity, anchorVelocity, fastest, r.first,
                      r.first + r.count);
   };
-  const std::span<const SkinTopology::Range> ranges = skin_->topology().ranges();
+  const std::span<const SkinTopology::Range> ranges = skin_.topology().ranges();
   if (std::none_of(ranges.begin(), ranges.end(), broken)) return;
   std::vector<std::size_t> points;
-  for (const PointBlock& b : skin_->blocks())
+  for (const PointBlock& b : skin_.blocks())
     for (std::size_t k = b.first; k < b.first + b.count; ++k)
       if (isBroken(state.position, state.velocity, anchorVelocity, fastest, k)) points.push_back(k);
-  SkinState carried;
-  carrySkin(*skin_, pose, carried);
+  SkinState placed;
+  placeSkin(skin_, pose, placed);
   for (const std::size_t k : points) {
     for (const auto axis : VectorArray::kAxes) {
-      (state.position.*axis)[k] = (carried.position.*axis)[k];
+      (state.position.*axis)[k] = (placed.position.*axis)[k];
       (state.velocity.*axis)[k] = (state.surroundings.anchorVelocity.*axis)[k];
     }
   }
@@ -324,7 +336,7 @@ SkinWorkspace& SkinWorkspace::operator=(const SkinWorkspace&) {
 }
 
 SkinRun& SkinWorkspace::run(const Skin& skin) {
-  if (run_ && &run_->skin() == &skin) return *run_;
+  if (run_ && run_->skin().id() == skin.id()) return *run_;
   if (skin.isSimulated())
     run_ = std::make_unique<SkinStepper>(skin);
   else

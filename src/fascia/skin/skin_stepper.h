@@ -3,9 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include <fascia/skin/contact/skin_contact.h>
 #include <fascia/skin/grid/prolongation.h>
-#include <fascia/skin/mesh/rigged_skin.h>
 #include <fascia/skin/skin.h>
 
 namespace fascia {
@@ -18,7 +16,7 @@ class SkinStepper final : public SkinRun {
   explicit SkinStepper(const Skin& skin);
   ~SkinStepper() override;
 
-  const Skin& skin() const override { return *skin_; }
+  const Skin& skin() const override { return skin_; }
   void advance(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
                SkinStats& stats) override;
 
@@ -29,7 +27,7 @@ class SkinStepper final : public SkinRun {
   void odeInterval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
                    SkinStats& stats);
   void rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
-  const FloatArray& carried(const SkinState& state);
+  const FloatArray& carryShare(const SkinState& state);
   int chooseStep(double duration_s);
   void leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats);
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
@@ -38,7 +36,8 @@ class SkinStepper final : public SkinRun {
   void limitSlide(SkinState& state) const;
   void repair(const SkinPose& pose, SkinState& state, SkinStats& stats);
 
-  const Skin* skin_;
+  Skin skin_;  // shares its parts: they live as long as this
+  std::unique_ptr<PointPlacer> placer_;
   StepCoefficients coefficients_;
   std::unique_ptr<SurfaceStepper> surface_;
   std::unique_ptr<SkinContact> contact_;
@@ -46,13 +45,12 @@ class SkinStepper final : public SkinRun {
   FatPressure fatPressure_;
   VectorArray nextAnchor_, target_;
   FloatArray wholly_;  // ones
-  CarryScratch scratch_;
   std::unique_ptr<OdeSkin> ode_;
 
   // The grid that this one rides on, if any.
   std::unique_ptr<SkinStepper> coarse_;
   Prolongation prolongation_;
-  VectorArray coarseStart_, coarseVelocity_, carrierNext_;
+  VectorArray coarseStart_, coarseGridVelocity_, coarseNext_;
 };
 
 }  // namespace fascia

@@ -10,7 +10,8 @@
 #include <fascia/field/solid.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/contact/flesh_contact.h>
-#include <fascia/skin/grid/leapfrog.h>
+#include <fascia/skin/grid/grid_stepper.h>
+#include <fascia/skin/point/leapfrog.h>
 
 namespace fascia {
 namespace {

@@ -111,7 +111,8 @@ std::string parseRow(const std::string& text, std::size_t count, const NumberRan
 
 template <class T>
 void readRows(const Json& json, const JsonPath& path, Reading& reading, const NumberRange& range,
-              const SkinPointsDef& grid, std::vector<T>& out) {
+              const SkinPointsDef& grid, SharedList<T>& list) {
+  std::vector<T>& out = list.edit();
   const auto columns = static_cast<std::size_t>(grid.columns);
   const auto rows = static_cast<std::size_t>(grid.rows);
   if constexpr (std::is_same_v<T, float>) {
@@ -159,7 +160,7 @@ Json rowsJson(const std::vector<T>& values, const SkinPointsDef& grid, const std
 
 struct TripleList {
   const char* name;
-  std::vector<Triple> SkinPointsDef::*member;
+  SharedList<Triple> SkinPointsDef::*member;
 };
 const TripleList kTripleLists[] = {
     {"anchor", &SkinPointsDef::anchor},
@@ -190,7 +191,7 @@ class SkinPointsCodec final : public Codec<SkinPointsDef> {
       if (!entries.empty()) out.set(name, rowsJson(entries, value, name));
     }
     if (!value.anchor_solid.empty()) {
-      out.set(kAnchorSolid, rowsJson(value.anchor_solid, value, kAnchorSolid));
+      out.set(kAnchorSolid, rowsJson(value.anchor_solid.values(), value, kAnchorSolid));
     }
     for (const TripleList& list : kTripleLists) {
       const std::vector<Triple>& entries = value.*list.member;

@@ -91,7 +91,7 @@ void check(const GridRig& rig, const Recording& recording) {
 }  // namespace
 
 GridRig gridRigOf(const Character& character) {
-  if (!character.skin() || !character.skin()->isGrid())
+  if (!character.skin() || !character.skin()->grid())
     throw Error("the character has no skin on a grid");
   if (character.skeleton().jointCount() > 0xffff) throw Error("there are too many joints");
   const CharacterState rest = initialState(character, character.source(-1));

@@ -11,8 +11,6 @@
 
 namespace fascia {
 
-class Skin;
-
 // Non-penetration of skin and flesh (Turner & Gobbetti 1998, §4.1.4 and §4.2.3): every point keeps
 // the distance of its fat τ from every solid. The paper tests the point moved inward along the
 // skin's normal, g(r − τ n) ≥ 0; as a distance changes at most as fast as its point moves, d(r) ≥ τ
@@ -55,8 +53,5 @@ class SkinContact {
     return all;
   }
 };
-
-// Of a grid: with all flesh. A mesh is carried out of what it touches (see pose_skin.h).
-std::unique_ptr<SkinContact> makeContact(const Skin& skin);
 
 }  // namespace fascia

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/point/plateau.h>
 
@@ -20,14 +21,34 @@ bool spansColumn(const GridLayout& g, int i) {
   return g.closed || i + 1 < g.columns;
 }
 
-// Area of cell (i, j), 0 outside of the grid; i may be -1 on a closed grid.
-double areaOrZero(const VectorArray& r, const GridLayout& g, int i, int j) {
-  if (j < 0 || j + 1 >= g.rows) return 0;
-  if (i < 0) {
-    if (!g.closed) return 0;
-    i += g.columns;
+// The areas of all cells.
+class CellAreas {
+ public:
+  CellAreas(const GridLayout& g, const VectorArray& r)
+      : g_(g), areas_(g.rows > 1 ? static_cast<std::size_t>(g.columns) * (g.rows - 1u) : 0) {
+    for (int j = 0; j + 1 < g.rows; ++j)
+      for (int i = 0; i < g.columns; ++i)
+        if (spansColumn(g, i)) areas_[number(i, j)] = cellArea(r, g, i, j);
   }
-  return spansColumn(g, i) ? cellArea(r, g, i, j) : 0;
+  // 0 outside of the grid; i may be -1 on a closed one.
+  double orZero(int i, int j) const {
+    if (j < 0 || j + 1 >= g_.rows) return 0;
+    if (i < 0 && g_.closed) i += g_.columns;
+    return i < 0 ? 0 : areas_[number(i, j)];
+  }
+
+ private:
+  std::size_t number(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(g_.columns) +
+           static_cast<std::size_t>(i);
+  }
+
+  const GridLayout& g_;
+  std::vector<double> areas_;  // 0 where there is no cell
+};
+
+double fourthPower(double x) {
+  return (x * x) * (x * x);
 }
 
 }  // namespace
@@ -46,11 +67,12 @@ void fillPads(const GridLayout& layout, VectorArray& values) {
 
 FloatArray pointAreas(const GridLayout& g, const VectorArray& rest) {
   FloatArray areas(g.storage(), 0.f);
+  const CellAreas cells(g, rest);
   for (int j = 0; j < g.rows; ++j)
     for (int i = 0; i < g.columns; ++i)
-      areas[g.at(i, j)] = static_cast<float>(
-          0.25 * (areaOrZero(rest, g, i, j) + areaOrZero(rest, g, i - 1, j) +
-                  areaOrZero(rest, g, i, j - 1) + areaOrZero(rest, g, i - 1, j - 1)));
+      areas[g.at(i, j)] =
+          static_cast<float>(0.25 * (cells.orZero(i, j) + cells.orZero(i - 1, j) +
+                                     cells.orZero(i, j - 1) + cells.orZero(i - 1, j - 1)));
   return areas;
 }
 
@@ -61,8 +83,10 @@ ElasticGrid::ElasticGrid(const GridLayout& layout, const VectorArray& rest, cons
        {&c_.w1, &c_.g1, &c_.w2, &c_.g2, &c_.w12, &c_.g12, &c_.lim12, &restLength1_, &restLength2_})
     a->assign(g.storage(), 0.f);
   c_.cap = m.max_stretch * m.max_stretch - 1;
+  const CellAreas areas(g, rest);
   constexpr double kShortest_m = 1e-6;  // coinciding rest points get no stiffness
-  for (int j = 0; j < g.rows; ++j) {
+  parallelFor(static_cast<std::size_t>(g.rows), [&](std::size_t row) {
+    const int j = static_cast<int>(row);
     for (int i = 0; i < g.columns; ++i) {
       const std::size_t k = g.at(i, j);
       const std::size_t right = g.at(g.wrapped(i + 1), j), up = g.at(i, j + 1);
@@ -73,22 +97,22 @@ ElasticGrid::ElasticGrid(const GridLayout& layout, const VectorArray& rest, cons
       if (hasColumn) {
         const double length = (pointAt(rest, k + 1) - pointAt(rest, k)).norm();
         const double relaxed = length / mean(m.prestretch, right);
-        const double area = 0.5 * (areaOrZero(rest, g, i, j) + areaOrZero(rest, g, i, j - 1));
+        const double area = 0.5 * (areas.orZero(i, j) + areas.orZero(i, j - 1));
         if (relaxed > kShortest_m) {
           restLength1_[k] = static_cast<float>(length);
           c_.g1[k] = static_cast<float>(relaxed * relaxed);
           c_.w1[k] =
-              static_cast<float>(area * mean(m.stretch_u, right) / (2 * std::pow(relaxed, 4)));
+              static_cast<float>(area * mean(m.stretch_u, right) / (2 * fourthPower(relaxed)));
         }
       }
       if (hasRow) {
         const double length = (pointAt(rest, up) - pointAt(rest, k)).norm();
         const double relaxed = length / mean(m.prestretch, up);
-        const double area = 0.5 * (areaOrZero(rest, g, i, j) + areaOrZero(rest, g, i - 1, j));
+        const double area = 0.5 * (areas.orZero(i, j) + areas.orZero(i - 1, j));
         if (relaxed > kShortest_m) {
           restLength2_[k] = static_cast<float>(length);
           c_.g2[k] = static_cast<float>(relaxed * relaxed);
-          c_.w2[k] = static_cast<float>(area * mean(m.stretch_v, up) / (2 * std::pow(relaxed, 4)));
+          c_.w2[k] = static_cast<float>(area * mean(m.stretch_v, up) / (2 * fourthPower(relaxed)));
         }
       }
       if (hasColumn && hasRow) {
@@ -102,12 +126,12 @@ ElasticGrid::ElasticGrid(const GridLayout& layout, const VectorArray& rest, cons
         const double shear = 0.25 * (m.shear[k] + m.shear[right] + m.shear[up] + m.shear[upRight]);
         if (sides > kShortest_m * kShortest_m) {
           c_.g12[k] = static_cast<float>(s1.dot(s2));
-          c_.w12[k] = static_cast<float>(cellArea(rest, g, i, j) * shear / (sides * sides));
+          c_.w12[k] = static_cast<float>(areas.orZero(i, j) * shear / (sides * sides));
           c_.lim12[k] = static_cast<float>(c_.cap * sides);
         }
       }
     }
-  }
+  });
   computeBound();
 }
 
@@ -117,7 +141,8 @@ void ElasticGrid::computeBound() {
   const double s2 = 1 + c_.cap;
   // One edge's force derivative is w[(r − G) I + 2 e eᵀ], r = |e|² ≤ s² G: `along` its direction
   // and `across` it. Edges along u and along v share a direction only as far as the cell is skewed.
-  for (int j = 0; j < g.rows; ++j) {
+  parallelFor(static_cast<std::size_t>(g.rows), [&](std::size_t row) {
+    const int j = static_cast<int>(row);
     for (int i = 0; i < g.columns; ++i) {
       double along1 = 0, across1 = 0, along2 = 0, across2 = 0, shear = 0, skew = 0;
       const auto edge = [&](double w, double G, double& along, double& across) {
@@ -144,7 +169,7 @@ void ElasticGrid::computeBound() {
       const double u = along1 + across2, v = along2 + across1;
       bound_[k] = static_cast<float>(std::max(u, v) + std::min(1.0, skew) * std::min(u, v) + shear);
     }
-  }
+  });
 }
 
 double ElasticGrid::energy(const VectorArray& r) const {

@@ -2,7 +2,7 @@
 
 #include <fascia/base/assert.h>
 #include <fascia/skin/grid/grid_kernels.h>
-#include <fascia/skin/grid/leapfrog.h>
+#include <fascia/skin/grid/grid_stepper.h>
 
 namespace fascia {
 namespace {

@@ -3,7 +3,7 @@
 #include <fascia/skin/grid/bending.h>
 #include <fascia/skin/grid/elastic_grid.h>
 #include <fascia/skin/grid/grid_layout.h>
-#include <fascia/skin/skin_topology.h>
+#include <fascia/skin/point/skin_topology.h>
 
 namespace fascia {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <fascia/skin/mesh/triangle_membrane.h>
-#include <fascia/skin/skin_topology.h>
+#include <fascia/skin/point/skin_topology.h>
 
 namespace fascia {
 

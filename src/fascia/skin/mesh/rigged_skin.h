@@ -5,7 +5,7 @@
 
 #include <fascia/pose/pose_skin.h>
 #include <fascia/skin/mesh/soft_ride.h>
-#include <fascia/skin/skin.h>
+#include <fascia/skin/point/skin_attachment.h>
 
 namespace fascia {
 
@@ -21,9 +21,8 @@ struct RiggedSkin {
   SoftRide soft;                // of the flesh that is soft
 };
 
-// Scratch memory for carrying points with a pose.
-struct CarryScratch {
-  VectorArray points;
+// Scratch memory of evaluateRigged.
+struct RiggedScratch {
   std::vector<Transform> motion;
   PoseSkin::Scratch pose;
   VectorArray soft;
@@ -32,6 +31,28 @@ struct CarryScratch {
 // Props and soft flesh included, into the first entries of `out`; with `jiggle`, which takes a step
 // of dt_s > 0 first.
 void evaluateRigged(const RiggedSkin& rigged, const SkinPose& pose, double dt_s,
-                    JiggleState* jiggle, CarryScratch& scratch, VectorArray& out);
+                    JiggleState* jiggle, RiggedScratch& scratch, VectorArray& out);
+
+// A simulated mesh hangs where its pose function has it.
+class MeshAttachment final : public SkinAttachment {
+ public:
+  // `sag`: how far a point's weight stretches its strand, zero where it has none; `fixed`: storage
+  // indices of the points that are not simulated.
+  MeshAttachment(std::shared_ptr<const RiggedSkin> rigged, VectorArray sag, std::size_t pointCount,
+                 std::vector<std::size_t> fixed);
+
+  const RiggedSkin& rigged() const { return *rigged_; }
+  const VectorArray& sag() const { return sag_; }
+  std::size_t pointCount() const { return pointCount_; }
+  const std::vector<std::size_t>& fixed() const { return fixed_; }
+
+  std::unique_ptr<PointPlacer> makePlacer() const override;
+
+ private:
+  std::shared_ptr<const RiggedSkin> rigged_;
+  VectorArray sag_;
+  std::size_t pointCount_;
+  std::vector<std::size_t> fixed_;
+};
 
 }  // namespace fascia

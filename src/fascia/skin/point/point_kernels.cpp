@@ -167,7 +167,7 @@ float finishImpl(const PointBlock& block, bool any, float reach, float restituti
   return hn::GetLane(hn::MaxOfLanes(d, fastest));
 }
 
-float followImpl(const VectorArray& nextAnchor, float rate, const FloatArray* carried,
+float followImpl(const VectorArray& nextAnchor, float rate, const FloatArray* carry,
                  PointSurroundings& around, VectorArray& velocity) {
   const D d;
   const std::size_t n = nextAnchor.size() / hn::Lanes(d) * hn::Lanes(d);
@@ -180,22 +180,22 @@ float followImpl(const VectorArray& nextAnchor, float rate, const FloatArray* ca
     farthest = hn::Max(farthest, dot(way, way));
     const V3 next = scaled(hn::Set(d, rate), way);
     const V3 change = next - anchorVelocity.at(k);
-    if (carried) v.set(k, mulAdd(hn::LoadU(d, carried->data() + k), change, v.at(k)));
+    if (carry) v.set(k, mulAdd(hn::LoadU(d, carry->data() + k), change, v.at(k)));
     flesh.set(k, flesh.at(k) + change);
     anchorVelocity.set(k, next);
   }
   return hn::GetLane(hn::MaxOfLanes(d, farthest));
 }
 
-void followCarrierImpl(const VectorArray& next, const FloatArray& carried,
-                       VectorArray& carrierVelocity, VectorArray& velocity) {
+void followCoarseImpl(const VectorArray& next, const FloatArray& carry, VectorArray& coarseVelocity,
+                      VectorArray& velocity) {
   const D d;
-  const std::size_t n = carried.size() / hn::Lanes(d) * hn::Lanes(d);
-  const MutablePointers v = pointers(velocity), carrier = pointers(carrierVelocity);
+  const std::size_t n = carry.size() / hn::Lanes(d) * hn::Lanes(d);
+  const MutablePointers v = pointers(velocity), coarse = pointers(coarseVelocity);
   for (std::size_t k = 0; k < n; k += hn::Lanes(d)) {
     const V3 now = pointers(next).at(k);
-    v.set(k, mulAdd(hn::LoadU(d, carried.data() + k), now - carrier.at(k), v.at(k)));
-    carrier.set(k, now);
+    v.set(k, mulAdd(hn::LoadU(d, carry.data() + k), now - coarse.at(k), v.at(k)));
+    coarse.set(k, now);
   }
 }
 
@@ -226,7 +226,7 @@ HWY_EXPORT(motionImpl);
 HWY_EXPORT(absorbImpl);
 HWY_EXPORT(finishImpl);
 HWY_EXPORT(followImpl);
-HWY_EXPORT(followCarrierImpl);
+HWY_EXPORT(followCoarseImpl);
 HWY_EXPORT(brokenImpl);
 
 BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
@@ -247,14 +247,14 @@ float finishContact(const PointBlock& block, bool any, float reach_m, float rest
                                           velocity, around);
 }
 
-float followAnchors(const VectorArray& nextAnchor, float rate_per_s, const FloatArray* carried,
+float followAnchors(const VectorArray& nextAnchor, float rate_per_s, const FloatArray* carry,
                     PointSurroundings& around, VectorArray& velocity) {
-  return HWY_DYNAMIC_DISPATCH(followImpl)(nextAnchor, rate_per_s, carried, around, velocity);
+  return HWY_DYNAMIC_DISPATCH(followImpl)(nextAnchor, rate_per_s, carry, around, velocity);
 }
 
-void followCarrier(const VectorArray& next, const FloatArray& carried, VectorArray& carrierVelocity,
-                   VectorArray& velocity) {
-  HWY_DYNAMIC_DISPATCH(followCarrierImpl)(next, carried, carrierVelocity, velocity);
+void followCoarse(const VectorArray& next, const FloatArray& carry, VectorArray& coarseVelocity,
+                  VectorArray& velocity) {
+  HWY_DYNAMIC_DISPATCH(followCoarseImpl)(next, carry, coarseVelocity, velocity);
 }
 
 bool anyBroken(const VectorArray& position, const VectorArray& velocity,

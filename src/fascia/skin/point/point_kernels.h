@@ -79,14 +79,14 @@ float finishContact(const PointBlock& block, bool any, float reach_m, float rest
 
 // Anchor velocities of the coming interval. What anchors change in velocity, the flesh of the half
 // spaces beside them does too; velocities of points with added mass follow in part (see leapfrog.h;
-// `carried` may be null). Returns the largest squared way of an anchor. All arrays in whole.
-float followAnchors(const VectorArray& nextAnchor, float rate_per_s, const FloatArray* carried,
+// `carry` may be null). Returns the largest squared way of an anchor. All arrays in whole.
+float followAnchors(const VectorArray& nextAnchor, float rate_per_s, const FloatArray* carry,
                     PointSurroundings& around, VectorArray& velocity);
 
-// The same for points that ride on a coarse surface: `next` is its velocity, `carrierVelocity` what
-// it was; writes next to carrierVelocity.
-void followCarrier(const VectorArray& next, const FloatArray& carried, VectorArray& carrierVelocity,
-                   VectorArray& velocity);
+// The same for points that ride on a coarse surface: `next` is its velocity, `coarseVelocity` what
+// it was; writes next to coarseVelocity.
+void followCoarse(const VectorArray& next, const FloatArray& carry, VectorArray& coarseVelocity,
+                  VectorArray& velocity);
 
 // True if any entry in [first, last) is not finite, beyond 1e9 m, or faster than `fastest`
 // relative to its anchor.

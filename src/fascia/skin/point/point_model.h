@@ -14,7 +14,7 @@ struct PointModel {
   FloatArray tissueDamping;     // N s/m
   FloatArray tissueRestLength;  // m
   FloatArray stiffnessBound;  // N/m, membrane + bending + tissue: what explicit steps must resolve
-  float carry = 0;            // least share of its anchor's velocity changes a point takes over
+  float carry = 0;            // least share of its anchor's changes of velocity a point takes over
   FloatArray slideLimit;      // m; farthest from its anchor at an interval's end; empty: any
   FloatArray free;            // 1, or 0 for points fixed to a joint and for padding
 };
@@ -39,7 +39,7 @@ struct StepCoefficients {
   FloatArray keep;        // velocity kept: (1 − z)/(1 + z)
   FloatArray weight;      // N per m/s² of gravity: the mass of free points
   FloatArray strandGain;  // share of a strand's closing speed removed: h k_d/(M' + h k_d)
-  FloatArray carried;     // 1 − M/M': share of the anchor's velocity change taken over
+  FloatArray carry;       // max(1 − M/M', PointModel::carry): see there
   float slide = 1;        // k_t: share of tangential velocity kept in contact
   float bounce = 0;       // k_n
 };

@@ -74,7 +74,7 @@ double uniformValue(const SkinDef& def, SkinQuantity quantity) {
   return 0;
 }
 
-std::vector<float>& pointValues(SkinPointsDef& p, SkinQuantity quantity) {
+SharedList<float>& pointValues(SkinPointsDef& p, SkinQuantity quantity) {
   switch (quantity) {
     case Q::density:
       return p.density;
@@ -110,7 +110,7 @@ std::vector<float>& pointValues(SkinPointsDef& p, SkinQuantity quantity) {
   return p.tightness;
 }
 
-const std::vector<float>& pointValues(const SkinPointsDef& points, SkinQuantity quantity) {
+const SharedList<float>& pointValues(const SkinPointsDef& points, SkinQuantity quantity) {
   return pointValues(const_cast<SkinPointsDef&>(points), quantity);
 }
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include <fascia/base/aligned.h>
-#include <fascia/skin/skin_def.h>
+#include <fascia/skin/def/skin_def.h>
 
 namespace fascia {
 
@@ -35,7 +35,7 @@ class SkinQuantities {
 
 // The uniform value that `def` gives a quantity; tissue_rest_length has none (the natural length).
 double uniformValue(const SkinDef& def, SkinQuantity quantity);
-const std::vector<float>& pointValues(const SkinPointsDef& points, SkinQuantity quantity);
-std::vector<float>& pointValues(SkinPointsDef& points, SkinQuantity quantity);
+const SharedList<float>& pointValues(const SkinPointsDef& points, SkinQuantity quantity);
+SharedList<float>& pointValues(SkinPointsDef& points, SkinQuantity quantity);
 
 }  // namespace fascia

@@ -6,12 +6,38 @@
 #include <fascia/base/assert.h>
 
 namespace fascia {
+namespace {
+
+using Anchor = TissueAnchors::Anchor;
+
+bool isBefore(const Anchor& a, const Anchor& b) {
+  return std::tie(a.solid, a.point) < std::tie(b.solid, b.point);
+}
+
+// Solid by solid, and in each of them point by point. Anchors usually come point by point: then it
+// is enough to deal them out to the solids.
+void sortBySolid(std::vector<Anchor>& anchors) {
+  if (!std::is_sorted(anchors.begin(), anchors.end(),
+                      [](const Anchor& a, const Anchor& b) { return a.point < b.point; })) {
+    std::sort(anchors.begin(), anchors.end(), isBefore);
+    return;
+  }
+  std::vector<std::size_t> next;  // place of each solid's next anchor
+  for (const Anchor& a : anchors) {
+    if (next.size() < a.solid.index() + 2) next.resize(a.solid.index() + 2);
+    ++next[a.solid.index() + 1];
+  }
+  for (std::size_t s = 1; s < next.size(); ++s) next[s] += next[s - 1];
+  std::vector<Anchor> dealt(anchors.size());
+  for (const Anchor& a : anchors) dealt[next[a.solid.index()]++] = a;
+  anchors = std::move(dealt);
+}
+
+}  // namespace
 
 TissueAnchors::TissueAnchors(std::vector<Anchor> anchors)
     : anchors_(std::move(anchors)), material_(anchors_.size()) {
-  std::sort(anchors_.begin(), anchors_.end(), [](const Anchor& a, const Anchor& b) {
-    return std::tie(a.solid, a.point) < std::tie(b.solid, b.point);
-  });
+  sortBySolid(anchors_);
   for (std::size_t i = 0; i < anchors_.size(); ++i) {
     const Anchor& a = anchors_[i];
     material_.x[i] = static_cast<float>(a.material.x());

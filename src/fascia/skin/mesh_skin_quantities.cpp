@@ -1,4 +1,4 @@
-#include <fascia/skin/mesh/mesh_skin_builder.h>
+#include <fascia/skin/mesh_skin_builder.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,15 +82,15 @@ void MeshSkinBuilder::measureFat() {
 // Uniform values; where the fat is thin the skin is lighter and sits tighter, where it is thick it
 // weighs and gives more. Then what the file says of single points, regions and brushes.
 void MeshSkinBuilder::setQuantities() {
-  const std::size_t storage = skin_.rest_.size();
+  const std::size_t storage = shape_->rest.size();
   std::vector<float> thicknesses;
   for (std::size_t p = 0; p < gap_.size(); ++p)
     if (covered_[p] && !fixed_[p]) thicknesses.push_back(std::max(gap_[p], 0.f));
-  const double usual = std::max(medianOf(std::move(thicknesses)), 1e-4 * skin_.size_m_);
+  const double usual = std::max(medianOf(std::move(thicknesses)), 1e-4 * shape_->size_m);
 
   const std::vector<double> edges = edgesAround(rig_);
-  const double gravity = skin_.settings_.gravity_m_per_s2.norm();
-  SkinQuantities& q = skin_.quantities_;
+  const double gravity = settings_.gravity_m_per_s2.norm();
+  SkinQuantities& q = (*quantities_);
   for (const QuantityInfo& i : quantityInfos())
     q[i.quantity].assign(storage, static_cast<float>(uniformValue(def_, i.quantity)));
   for (std::size_t k = 0; k < order_.size(); ++k) {
@@ -121,7 +121,7 @@ void MeshSkinBuilder::setQuantities() {
   for (std::size_t k = 0; k < order_.size(); ++k)
     points.push_back(
         {k, 0, 0, covered_[order_[k]] ? solid_[order_[k]] : SolidId(), &rig_.weights[order_[k]]});
-  applySkinEdits(def_, base_, report_, points, &rig_, skin_.rest_, q);
+  applySkinEdits(def_, base_, report_, points, &rig_, shape_->rest, q);
 }
 
 }  // namespace fascia

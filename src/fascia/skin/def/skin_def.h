@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <fascia/base/shared_list.h>
 #include <fascia/base/tunable.h>
 #include <fascia/math/types.h>
 
@@ -23,6 +24,7 @@ struct SkinMaterialDef {
   double max_stretch = 1.4;
   double friction_per_s = 8;
   double restitution = 0;  // the paper's k_n
+  bool operator==(const SkinMaterialDef&) const = default;
 };
 constexpr auto tunables(const SkinMaterialDef*) {
   using M = SkinMaterialDef;
@@ -49,6 +51,7 @@ struct SkinFatDef {
   double thickness_m = 0.01;
   double compressible = 0;
   double bulk_Pa = 0;
+  bool operator==(const SkinFatDef&) const = default;
 };
 constexpr auto tunables(const SkinFatDef*) {
   using F = SkinFatDef;
@@ -66,6 +69,7 @@ struct SkinTissueDef {
   double damping_Ns_per_m3 = 60;
   std::optional<double> rest_length_m;
   double carry = 0;
+  bool operator==(const SkinTissueDef&) const = default;
 };
 constexpr auto tunables(const SkinTissueDef*) {
   using T = SkinTissueDef;
@@ -87,6 +91,7 @@ struct SkinEndDef {
                                    // surface on the ray from here along axis
   Vec3 axis = Vec3::Zero();        // in the joint's frame; zero = away from the other end
   double radius_m = 0;
+  bool operator==(const SkinEndDef&) const = default;
 };
 constexpr auto tunables(const SkinEndDef*) {
   using E = SkinEndDef;
@@ -124,6 +129,7 @@ struct SkinPoseDef {
   double tightness = 0.5;
   // The strands' inner ends are where the pose function has the mesh.
   bool simulate = false;
+  bool operator==(const SkinPoseDef&) const = default;
 };
 constexpr auto tunables(const SkinPoseDef*) {
   using P = SkinPoseDef;
@@ -146,6 +152,7 @@ struct SkinRegionDef {
     SkinQuantity quantity;
     enum class Mode { set, scale, add } mode = Mode::set;
     double value = 0;
+    bool operator==(const Edit&) const = default;
   };
   std::string name;
   double u_min = 0, u_max = 1;  // around; u_min > u_max wraps around
@@ -154,6 +161,7 @@ struct SkinRegionDef {
   std::string joint;            // of an imported mesh, if given: instead, by the joint's weights
   double feather = 0.05;
   std::vector<Edit> edits;
+  bool operator==(const SkinRegionDef&) const = default;
 };
 constexpr auto tunables(const SkinRegionDef::Edit*) {
   return std::tuple{tunable(&SkinRegionDef::Edit::value, "value", "", {-1e8, 1e8},
@@ -176,6 +184,7 @@ struct SkinBrushDef {
   std::string joint;
   double radius_m = 0.1;
   double amount = 0;
+  bool operator==(const SkinBrushDef&) const = default;
 };
 constexpr auto tunables(const SkinBrushDef*) {
   using B = SkinBrushDef;
@@ -190,6 +199,7 @@ struct SkinAnchorDef {
   double u = 0, v = 0;  // the skin point nearest to these material coordinates
   std::string solid;
   Vec3 position_m = Vec3::Zero();
+  bool operator==(const SkinAnchorDef&) const = default;
 };
 constexpr auto tunables(const SkinAnchorDef*) {
   using A = SkinAnchorDef;
@@ -204,17 +214,19 @@ constexpr auto tunables(const SkinAnchorDef*) {
 // Of an imported mesh: in the order of RiggedModel::points_m, without anchors and rest positions.
 struct SkinPointsDef {
   int columns = 0, rows = 0;
-  std::vector<float> density, stretch_u, stretch_v, shear, bending, drag, prestretch, fat,
+  SharedList<float> density, stretch_u, stretch_v, shear, bending, drag, prestretch, fat,
       tissue_stiffness, tissue_damping, tissue_rest_length, jiggle, muscle, volume, tightness;
-  std::vector<int> anchor_solid;                      // -1: no tissue
-  std::vector<std::array<float, 3>> anchor;           // material coordinates on that solid
-  std::vector<std::array<float, 3>> rest_position_m;  // world, rest posture
+  SharedList<int> anchor_solid;                      // -1: no tissue
+  SharedList<std::array<float, 3>> anchor;           // material coordinates on that solid
+  SharedList<std::array<float, 3>> rest_position_m;  // world, rest posture
+  bool operator==(const SkinPointsDef&) const = default;
 };
 
 // The skin against itself.
 struct SkinContactDef {
   bool self = false;
   double gap_m = 0.002;
+  bool operator==(const SkinContactDef&) const = default;
 };
 constexpr auto tunables(const SkinContactDef*) {
   using C = SkinContactDef;
@@ -228,6 +240,7 @@ struct SkinPartDef {
   // Carried by its joints as it is: armour, buckles, a robot. Pieces that a single joint carries
   // are, unless a rule with false makes them skin.
   bool rigid = true;
+  bool operator==(const SkinPartDef&) const = default;
 };
 constexpr auto tunables(const SkinPartDef*) {
   return std::tuple{tunable(&SkinPartDef::rigid, "rigid", "Carried by its joints as it is")};
@@ -249,6 +262,7 @@ struct SkinDef {
   std::optional<SkinPointsDef> points;
   SkinContactDef contact;
   std::vector<SkinPartDef> parts;  // of an imported mesh
+  bool operator==(const SkinDef&) const = default;
 };
 constexpr auto tunables(const SkinDef*) {
   return std::tuple{

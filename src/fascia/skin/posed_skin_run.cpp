@@ -1,4 +1,4 @@
-#include <fascia/skin/mesh/posed_skin_run.h>
+#include <fascia/skin/posed_skin_run.h>
 
 #include <algorithm>
 #include <chrono>

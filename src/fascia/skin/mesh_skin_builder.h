@@ -13,15 +13,16 @@ namespace fascia {
 // that they carry its weight there.
 class MeshSkinBuilder {
  public:
-  MeshSkinBuilder(Skin& skin, const SkinDef& def, const SkinBase& base, std::string pointer,
-                  Diagnostics& diagnostics)
-      : skin_(skin),
-        def_(def),
+  MeshSkinBuilder(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
+                  std::string pointer, Diagnostics& diagnostics)
+      : def_(def),
+        settings_(settings),
         base_(base),
         rig_(*base.rig),
         report_(base, std::move(pointer), diagnostics) {}
 
-  void build();
+  // With errors reported the result must not be used, and may be empty.
+  SkinParts build();
 
  private:
   bool checkDef() const;
@@ -42,8 +43,8 @@ class MeshSkinBuilder {
   std::vector<Vec3> pointNormals() const;  // of the model's points, at rest
   Vec3 sag(std::size_t k) const;
 
-  Skin& skin_;
   const SkinDef& def_;
+  const SkinSettings& settings_;
   const SkinBase& base_;
   const RiggedModel& rig_;
   SkinReport report_;
@@ -64,6 +65,11 @@ class MeshSkinBuilder {
   std::vector<std::uint32_t> order_;  // model point per storage index
   std::size_t elasticCount_ = 0;      // the first so many in storage are simulated
   FloatArray naturalFat_;             // per storage index, before edits
+
+  SkinParts parts_;
+  std::shared_ptr<SkinShape> shape_ = std::make_shared<SkinShape>();
+  std::shared_ptr<SkinQuantities> quantities_ = std::make_shared<SkinQuantities>();
+  std::shared_ptr<PointModel> points_ = std::make_shared<PointModel>();
 };
 
 }  // namespace fascia

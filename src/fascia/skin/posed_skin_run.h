@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fascia/skin/mesh/rigged_skin.h>
+#include <fascia/skin/skin.h>
 
 namespace fascia {
 
@@ -14,8 +15,8 @@ class PosedSkinRun final : public SkinRun {
                SkinStats& stats) override;
 
  private:
-  const Skin& skin_;
-  CarryScratch scratch_;
+  Skin skin_;
+  RiggedScratch scratch_;
 };
 
 }  // namespace fascia

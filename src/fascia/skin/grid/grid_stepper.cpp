@@ -1,7 +1,6 @@
-#include <fascia/skin/grid/leapfrog.h>
+#include <fascia/skin/grid/grid_stepper.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -10,11 +9,6 @@
 
 namespace fascia {
 namespace {
-
-double neededMass(const PointModel& p, std::size_t k, double h) {
-  FASCIA_ASSERT(k < p.stiffnessBound.size(), "every point's stiffness is bounded");
-  return 0.25 * kStabilityMargin * h * h * p.stiffnessBound[k];
-}
 
 // Below this many points one tile in place beats copying and waking threads.
 constexpr std::size_t kTilingPoints = 4096;
@@ -42,50 +36,6 @@ SweepBand bandOf(VectorArray& position, VectorArray& velocity, int firstStored) 
 }
 
 }  // namespace
-
-void prepareStep(const PointModel& p, const ContactResponse& contact, double h,
-                 StepCoefficients& out) {
-  const std::size_t n = p.mass.size();
-  FASCIA_ASSERT(h > 0, "time goes on");
-  FASCIA_ASSERT(p.stiffnessBound.size() == n && p.free.size() == n && p.drag.size() == n,
-                "a number for each point");
-  for (FloatArray* a : {&out.gain, &out.keep, &out.weight, &out.strandGain, &out.carried})
-    a->resize(n);
-  out.step_s = static_cast<float>(h);
-  out.slide = static_cast<float>(std::exp(-h * contact.friction_per_s));
-  out.bounce = static_cast<float>(contact.restitution);
-  for (std::size_t k = 0; k < n; ++k) {
-    const bool isFree = p.free[k] > 0;
-    const double mass = std::max<double>(p.mass[k], neededMass(p, k, h));
-    FASCIA_ASSERT(!isFree || mass > 0, "free points have mass");
-    const double z = isFree ? 0.5 * h * p.drag[k] / mass : 0;
-    out.gain[k] = isFree ? static_cast<float>(h / (mass * (1 + z))) : 0.f;
-    out.keep[k] = isFree ? static_cast<float>(std::max(0.0, (1 - z) / (1 + z))) : 1.f;
-    out.weight[k] = isFree ? p.mass[k] : 0.f;
-    const double damping = h * p.tissueDamping[k];
-    out.strandGain[k] = isFree ? static_cast<float>(damping / (mass + damping)) : 0.f;
-    out.carried[k] = isFree ? std::max(p.carry, static_cast<float>(1 - p.mass[k] / mass)) : 0.f;
-  }
-}
-
-double longestStep(const PointModel& p, double share) {
-  const auto addedShare = [&](double h) {
-    double own = 0, added = 0;
-    for (std::size_t k = 0; k < p.mass.size(); ++k) {
-      if (p.free[k] == 0) continue;
-      own += p.mass[k];
-      added += std::max(0.0, neededMass(p, k, h) - p.mass[k]);
-    }
-    return own > 0 ? added / own : 0.0;
-  };
-  double low = 1e-7, high = 1.0 / 12;
-  if (addedShare(high) <= share) return high;
-  for (int i = 0; i < 50; ++i) {
-    const double middle = std::sqrt(low * high);
-    (addedShare(middle) <= share ? low : high) = middle;
-  }
-  return low;
-}
 
 GridStepper::GridStepper(const GridLayout& layout) : layout_(layout) {
   const bool tiled = layout.pointCount() >= kTilingPoints && layout.rows >= 2 * kTileRows;

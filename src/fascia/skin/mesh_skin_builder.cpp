@@ -1,11 +1,11 @@
-#include <fascia/skin/mesh/mesh_skin_builder.h>
+#include <fascia/skin/mesh_skin_builder.h>
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 
 #include <fascia/pose/softness.h>
-#include <fascia/skin/grid/grid_skin_builder.h>
+#include <fascia/skin/grid/grid_layout.h>
 #include <fascia/skin/mesh/mesh_topology.h>
 #include <fascia/skin/mesh/rigged_skin.h>
 
@@ -65,9 +65,9 @@ std::vector<char> borderPoints(const RiggedModel& rig) {
 
 }  // namespace
 
-void MeshSkinBuilder::build() {
+SkinParts MeshSkinBuilder::build() {
   report_.checkValues(def_);
-  if (!checkDef() || !findJoints()) return;
+  if (!checkDef() || !findJoints()) return {};
   findFelt();
   measureFat();
   chooseFixed();
@@ -76,6 +76,10 @@ void MeshSkinBuilder::build() {
   setQuantities();
   makeModel();
   makePoseSkin();
+  parts_.shape = shape_;
+  parts_.quantities = quantities_;
+  parts_.points = points_;
+  return std::move(parts_);
 }
 
 bool MeshSkinBuilder::checkDef() const {
@@ -181,7 +185,7 @@ void MeshSkinBuilder::orderPoints() {
   storageOf_.resize(order_.size());
   for (std::size_t k = 0; k < order_.size(); ++k)
     storageOf_[order_[k]] = static_cast<std::uint32_t>(k);
-  for (std::size_t k = elasticCount_; k < order_.size(); ++k) skin_.fixedPoints_.push_back(k);
+  for (std::size_t k = elasticCount_; k < order_.size(); ++k) shape_->fixedPoints.push_back(k);
 }
 
 void MeshSkinBuilder::makeRestShape() {
@@ -189,19 +193,19 @@ void MeshSkinBuilder::makeRestShape() {
   const std::size_t storage =
       (order_.size() + GridLayout::kPad - 1) / GridLayout::kPad * GridLayout::kPad +
       GridLayout::kPad;
-  skin_.rest_.resize(storage);
+  shape_->rest.resize(storage);
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const Eigen::Vector3f& p = rig_.points_m[order_[k]];
-    skin_.rest_.x[k] = p.x(), skin_.rest_.y[k] = p.y(), skin_.rest_.z[k] = p.z();
+    shape_->rest.x[k] = p.x(), shape_->rest.y[k] = p.y(), shape_->rest.z[k] = p.z();
   }
-  skin_.size_m_ = std::max(1e-6, rig_.size_m());
+  shape_->size_m = std::max(1e-6, rig_.size_m());
 }
 
 // How far a point's weight stretches its strand: so much higher lies the anchor.
 Vec3 MeshSkinBuilder::sag(std::size_t k) const {
-  const double stiffness = skin_.points_.tissueStiffness[k];
+  const double stiffness = points_->tissueStiffness[k];
   if (!(stiffness > 0)) return Vec3::Zero();
-  return skin_.points_.mass[k] / stiffness * skin_.settings_.gravity_m_per_s2;
+  return points_->mass[k] / stiffness * settings_.gravity_m_per_s2;
 }
 
 TriangleMembrane MeshSkinBuilder::makeMembrane() const {
@@ -215,34 +219,34 @@ TriangleMembrane MeshSkinBuilder::makeMembrane() const {
     const Joint& joint = joints_[rig_.weights[t[0]].joint[0]];
     material.u.push_back(joint.rest_world.rotation.col(1).cast<float>());
   }
-  const SkinQuantities& q = skin_.quantities_;
+  const SkinQuantities& q = (*quantities_);
   material.stretch_u = q[SkinQuantity::stretch_v];
   material.stretch_v = q[SkinQuantity::stretch_u];
   material.shear = q[SkinQuantity::shear];
   material.bending = q[SkinQuantity::bending];
   material.prestretch = q[SkinQuantity::prestretch];
   material.max_stretch = static_cast<float>(def_.material.max_stretch);
-  return TriangleMembrane(triangles, skin_.rest_, material);
+  return TriangleMembrane(triangles, shape_->rest, material);
 }
 
 void MeshSkinBuilder::makeModel() {
   TriangleMembrane membrane = makeMembrane();
-  skin_.contactResponse_ = {def_.material.friction_per_s, def_.material.restitution};
+  parts_.contactResponse = {def_.material.friction_per_s, def_.material.restitution};
   std::vector<std::size_t> points(order_.size());
   std::iota(points.begin(), points.end(), 0u);
   const std::span<const std::size_t> elastic = std::span(points).first(elasticCount_);
-  skin_.points_ =
-      makePointModel({skin_.quantities_, membrane.pointAreas(), membrane.stiffnessBound(),
-                      1e-6 * skin_.size_m_ * skin_.size_m_ / static_cast<double>(order_.size()),
-                      points, skin_.fixedPoints_, elastic});
-  skin_.points_.carry = static_cast<float>(def_.tissue.carry);
-  skin_.points_.slideLimit.resize(elasticCount_);
+  (*points_) =
+      makePointModel({(*quantities_), membrane.pointAreas(), membrane.stiffnessBound(),
+                      1e-6 * shape_->size_m * shape_->size_m / static_cast<double>(order_.size()),
+                      points, shape_->fixedPoints, elastic});
+  points_->carry = static_cast<float>(def_.tissue.carry);
+  points_->slideLimit.resize(elasticCount_);
   for (std::size_t k = 0; k < elasticCount_; ++k) {
     const double slide =
-        kSlideOfFat * double{skin_.quantities_[SkinQuantity::fat][k]} + kLeastSlide * skin_.size_m_;
-    skin_.points_.slideLimit[k] = static_cast<float>(slide + sag(k).norm());
+        kSlideOfFat * double{(*quantities_)[SkinQuantity::fat][k]} + kLeastSlide * shape_->size_m;
+    points_->slideLimit[k] = static_cast<float>(slide + sag(k).norm());
   }
-  skin_.defaultStep_s_ = kStep_s;
+  parts_.defaultStep_s = kStep_s;
 
   MeshTopology::Drawn drawn;
   for (const RigVertex& v : rig_.vertices) {
@@ -250,7 +254,7 @@ void MeshSkinBuilder::makeModel() {
     drawn.uvs.push_back(v.uv);
   }
   drawn.triangles = rig_.drawnTriangles;
-  skin_.topology_ =
+  parts_.topology =
       std::make_shared<MeshTopology>(order_.size(), std::move(membrane), std::move(drawn));
 }
 
@@ -258,7 +262,7 @@ void MeshSkinBuilder::makeModel() {
 // shape.
 void MeshSkinBuilder::makePoseSkin() {
   const std::vector<Vec3> normals = pointNormals();
-  const SkinQuantities& q = skin_.quantities_;
+  const SkinQuantities& q = (*quantities_);
   const std::size_t count = order_.size();
   std::vector<Eigen::Vector3f> rest;
   std::vector<PointWeights> weights;
@@ -288,22 +292,24 @@ void MeshSkinBuilder::makePoseSkin() {
   rigged->skin =
       std::make_shared<PoseSkin>(PoseSource{rest, weights, storedTriangles(), joints}, dials);
   rigged->fleshSolids = base_.flesh.solidCount();
-  skin_.simulated_ = def_.pose.simulate;
-  VectorArray skin = skin_.rest_, anchors = skin_.rest_;
-  skin_.sag_ = VectorArray(skin_.rest_.size());
+  parts_.simulated = def_.pose.simulate;
+  VectorArray skin = shape_->rest, anchors = shape_->rest;
+  VectorArray sags(shape_->rest.size());
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3 s = k < elasticCount_ ? sag(k) : Vec3::Zero();
-    skin_.sag_.x[k] = static_cast<float>(s.x());
-    skin_.sag_.y[k] = static_cast<float>(s.y());
-    skin_.sag_.z[k] = static_cast<float>(s.z());
+    sags.x[k] = static_cast<float>(s.x());
+    sags.y[k] = static_cast<float>(s.y());
+    sags.z[k] = static_cast<float>(s.z());
     skin.x[k] = rest[k].x(), skin.y[k] = rest[k].y(), skin.z[k] = rest[k].z();
-    anchors.x[k] = skin.x[k] - skin_.sag_.x[k];
-    anchors.y[k] = skin.y[k] - skin_.sag_.y[k];
-    anchors.z[k] = skin.z[k] - skin_.sag_.z[k];
+    anchors.x[k] = skin.x[k] - sags.x[k];
+    anchors.y[k] = skin.y[k] - sags.y[k];
+    anchors.z[k] = skin.z[k] - sags.z[k];
   }
   rigged->soft =
       SoftRide(base_.flesh, base_.posedFlesh, base_.posedSkeleton.joint_world, skin, count);
-  skin_.rigged_ = std::move(rigged);
+  parts_.attachment =
+      std::make_shared<MeshAttachment>(rigged, std::move(sags), count, shape_->fixedPoints);
+  parts_.rigged = std::move(rigged);
   if (def_.fat.bulk_Pa > 0 && def_.pose.simulate) layFat(skin, anchors);
 }
 
@@ -320,18 +326,9 @@ void MeshSkinBuilder::layFat(const VectorArray& skin, const VectorArray& anchors
   for (const std::uint32_t p : order_) solid.push_back(covered_[p] ? solid_[p] : SolidId());
   FatPressureModel model =
       prepareFatPressure({def_.fat.bulk_Pa, storedTriangles(), skin, anchors,
-                          skin_.quantities_[SkinQuantity::fat], solid, skin_.points_});
+                          (*quantities_)[SkinQuantity::fat], solid, (*points_)});
   if (!model.layers.empty())
-    skin_.fatPressure_ = std::make_shared<FatPressureModel>(std::move(model));
-}
-
-Skin::Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
-           const std::string& pointer, Diagnostics& diagnostics)
-    : settings_(settings) {
-  if (base.rig)
-    MeshSkinBuilder(*this, def, base, pointer, diagnostics).build();
-  else
-    GridSkinBuilder(*this, def, base, pointer, diagnostics).build();
+    parts_.fatPressure = std::make_shared<FatPressureModel>(std::move(model));
 }
 
 }  // namespace fascia

@@ -1,0 +1,208 @@
+#include <fascia/character/character_builder.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fascia/character/idle_settings.h>
+#include <fascia/flesh/bind.h>
+
+namespace fascia {
+namespace {
+
+SkinSettings settingsOf(const SimulationDef& s, double interval_s) {
+  SkinSettings out;
+  out.gravity_m_per_s2 = s.gravity_m_per_s2;
+  out.integrator = s.integrator;
+  out.step_s = s.step_s;
+  out.min_step_s = s.min_step_s;
+  out.max_step_s = s.max_step_s;
+  out.position_tolerance_m = s.position_tolerance_m;
+  out.velocity_tolerance = s.velocity_tolerance;
+  out.correction_tolerance_m = s.correction_tolerance_m;
+  if (interval_s > 0) out.interval_s = interval_s;
+  return out;
+}
+
+bool isSoft(const FleshSolidDef& solid) {
+  return solid.soft.has_value();
+}
+
+// What ids, indices of values and names depend on.
+bool sameStructure(const SkeletonDef& a, const SkeletonDef& b) {
+  const auto sameDof = [](const DofDef& x, const DofDef& y) { return x.dof == y.dof; };
+  return std::ranges::equal(a.joints, b.joints, [&](const JointDef& x, const JointDef& y) {
+    return x.name == y.name && x.parent == y.parent && std::ranges::equal(x.dofs, y.dofs, sameDof);
+  });
+}
+
+// What ids and indices of parameters depend on.
+bool sameStructure(const FleshDef& a, const FleshDef& b) {
+  return std::ranges::equal(a.solids, b.solids, [](const FleshSolidDef& x, const FleshSolidDef& y) {
+    return x.name == y.name && x.solid.shape == y.solid.shape &&
+           std::ranges::equal(x.solid.deformations, y.solid.deformations, {}, &SolidDef::Step::type,
+                              &SolidDef::Step::type);
+  });
+}
+
+}  // namespace
+
+CharacterBuilder::CharacterBuilder(std::shared_ptr<const CharacterDef> def, double interval_s,
+                                   const CharacterParts* before)
+    : before_(before) {
+  parts_.def = std::move(def);
+  parts_.interval_s = interval_s;
+}
+
+CharacterParts CharacterBuilder::build() {
+  makeSkeleton();
+  // Joints are referred to by name everywhere below: without them more messages would mislead.
+  diagnostics_.throwIfErrors();
+  makeFlesh();
+  const bool hasFlesh = diagnostics_.ok();
+  if (hasFlesh) makeSoftFlesh();
+  validateTunables(def().simulation, "/simulation", diagnostics_);
+  if (def().rig) validateTunables(*def().rig, "/rig", diagnostics_);
+  bindMotions();
+  if (hasFlesh) makeSkin();
+  diagnostics_.throwIfErrors();
+  warnOfIdleSettings(def(), diagnostics_);
+  parts_.warnings = diagnostics_.warnings();
+  return std::move(parts_);
+}
+
+void CharacterBuilder::makeSkeleton() {
+  if (before_ && before_->def->skeleton == def().skeleton)
+    parts_.skeleton = before_->skeleton;
+  else
+    parts_.skeleton = std::make_shared<Skeleton>(def().skeleton, "/skeleton", diagnostics_);
+}
+
+// Solids know their joints by number: a joint may move without a change of the flesh.
+void CharacterBuilder::makeFlesh() {
+  const bool keepsJoints = before_ && (before_->skeleton == parts_.skeleton ||
+                                       sameStructure(before_->def->skeleton, def().skeleton));
+  if (keepsJoints && before_->def->flesh == def().flesh)
+    parts_.flesh = before_->flesh;
+  else
+    parts_.flesh = std::make_shared<Flesh>(def().flesh, *parts_.skeleton, "/solids", diagnostics_);
+  if (keepsJoints && before_->def->ornaments == def().ornaments)
+    parts_.ornaments = before_->ornaments;
+  else
+    parts_.ornaments = std::make_shared<Flesh>(def().ornaments, *parts_.skeleton, "/ornaments",
+                                               diagnostics_, Flesh::Role::ornament);
+}
+
+void CharacterBuilder::checkSoftness() {
+  const std::vector<FleshSolidDef>&solids = def().flesh.solids, &ornaments = def().ornaments.solids;
+  for (std::size_t i = 0; i < ornaments.size(); ++i)
+    if (isSoft(ornaments[i]))
+      diagnostics_.error("/ornaments/" + std::to_string(i) + "/soft",
+                         "an ornament is rigid: it cannot be soft", "make it one of the solids");
+  for (std::size_t m = 0; m < def().motions.size(); ++m) {
+    const std::vector<TrackDef>& tracks = def().motions[m].tracks;
+    for (std::size_t t = 0; t < tracks.size(); ++t) {
+      if (tracks[t].target != TrackDef::Target::solid) continue;
+      const auto solid = std::ranges::find(solids, tracks[t].name, &FleshSolidDef::name);
+      if (solid == solids.end() || !isSoft(*solid)) continue;
+      diagnostics_.error(
+          "/motions/" + std::to_string(m) + "/tracks/" + std::to_string(t),
+          "the soft solid '" + solid->name + "' takes its shape from forces: it has no keys",
+          "drop its \"soft\", or the track");
+    }
+  }
+}
+
+// Bodies are made of soft solids alone, and of where these are in their joints.
+bool CharacterBuilder::keepsSoftFlesh() const {
+  if (!before_ || !before_->softFlesh) return false;
+  if (before_->flesh == parts_.flesh) return true;
+  const std::vector<FleshSolidDef>&old = before_->def->flesh.solids, &now = def().flesh.solids;
+  if (old.size() != now.size()) return false;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const SolidId id(static_cast<std::int64_t>(i));
+    if (!isSoft(old[i]) && !isSoft(now[i])) continue;
+    if (old[i] != now[i] || before_->flesh->joint(id) != parts_.flesh->joint(id)) return false;
+  }
+  return true;
+}
+
+void CharacterBuilder::makeSoftFlesh() {
+  checkSoftness();
+  if (std::ranges::none_of(def().flesh.solids, isSoft)) return;
+  parts_.softFlesh = keepsSoftFlesh() ? before_->softFlesh
+                                      : std::make_shared<SoftFlesh>(def().flesh, *parts_.flesh,
+                                                                    "/solids", diagnostics_);
+}
+
+// Whether motions find joints, solids and parameters under the numbers that they had.
+bool CharacterBuilder::keepsBindings() const {
+  return before_ &&
+         (before_->skeleton == parts_.skeleton ||
+          sameStructure(before_->def->skeleton, def().skeleton)) &&
+         (before_->flesh == parts_.flesh || sameStructure(before_->def->flesh, def().flesh)) &&
+         (before_->ornaments == parts_.ornaments ||
+          sameStructure(before_->def->ornaments, def().ornaments));
+}
+
+void CharacterBuilder::bindMotions() {
+  const std::vector<MotionDef>& motions = def().motions;
+  const bool keeps = keepsBindings();
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const std::string pointer = "/motions/" + std::to_string(i);
+    if (keeps && i < before_->def->motions.size() && before_->def->motions[i] == motions[i])
+      parts_.clips.push_back(before_->clips[i]);
+    else
+      parts_.clips.push_back(std::make_shared<BoundClip>(bindMotion(
+          motions[i], *parts_.skeleton, *parts_.flesh, *parts_.ornaments, pointer, diagnostics_)));
+    const auto before = motions.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find_if(motions.begin(), before,
+                     [&](const MotionDef& m) { return m.name == motions[i].name; }) != before)
+      diagnostics_.error(pointer + "/name", "found '" + motions[i].name + "' a second time",
+                         "give every motion a name of its own");
+  }
+  if (def().rig && def().rig->model) bindRigMotions();
+}
+
+// The rig's motions come after the character's own; one that has the name of an own one is hidden.
+void CharacterBuilder::bindRigMotions() {
+  const std::shared_ptr<const RiggedModel>& model = def().rig->model;
+  std::vector<SampledFrame> frames;
+  for (const RigJoint& j : model->joints)
+    frames.push_back({j.name,
+                      j.parent < 0 ? "" : model->joints[static_cast<std::size_t>(j.parent)].name,
+                      j.rest_world});
+  for (const SampledMotion& motion : model->motions) {
+    if (std::ranges::any_of(parts_.clips, [&](const auto& c) { return c->name == motion.name; }))
+      continue;
+    // Shares the ownership of the whole model.
+    parts_.clips.push_back(std::make_shared<BoundClip>(
+        bindSampled(std::shared_ptr<const SampledMotion>(model, &motion), frames, *parts_.skeleton,
+                    "/rig", diagnostics_)));
+    if (!diagnostics_.ok()) return;
+  }
+}
+
+void CharacterBuilder::makeSkin() {
+  if (!def().skin) return;
+  const RiggedModel* rig = def().rig ? def().rig->model.get() : nullptr;
+  const bool sameBelow = before_ && before_->skin && before_->skeleton == parts_.skeleton &&
+                         before_->flesh == parts_.flesh &&
+                         before_->def->simulation == def().simulation &&
+                         before_->def->rig == def().rig;
+  if (sameBelow && before_->def->skin == def().skin) {
+    parts_.skin = before_->skin;
+    return;
+  }
+  PosedSkeleton posedSkeleton;
+  PosedFlesh posedFlesh;
+  const Posture rest = parts_.skeleton->restPosture();
+  parts_.skeleton->pose(rest, posedSkeleton);
+  parts_.flesh->pose(rest, posedSkeleton, {}, posedFlesh);
+  parts_.skin = std::make_shared<Skin>(
+      *def().skin, settingsOf(def().simulation, parts_.interval_s),
+      SkinBase{*parts_.skeleton, *parts_.flesh, posedSkeleton, posedFlesh, rig}, "/skin",
+      diagnostics_, before_ ? before_->skin.get() : nullptr);
+}
+
+}  // namespace fascia

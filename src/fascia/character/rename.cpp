@@ -1,0 +1,69 @@
+#include <algorithm>
+
+#include <fascia/character/editing.h>
+
+namespace fascia {
+namespace {
+
+template <class List>
+bool hasName(const List& list, const std::string& name) {
+  return std::ranges::any_of(list, [&](const auto& item) { return item.name == name; });
+}
+
+template <class List>
+void requireRenamable(const List& list, const char* kind, const std::string& from,
+                      const std::string& to) {
+  if (!hasName(list, from))
+    throw Error(std::string("found no ") + kind + " named '" + from + "' to rename");
+  if (to.empty()) throw Error(std::string("a ") + kind + " needs a name: found an empty one");
+  if (from != to && hasName(list, to))
+    throw Error(std::string("there is a ") + kind + " named '" + to + "' already");
+}
+
+// Replaces one name by another wherever it stands.
+class Renaming {
+ public:
+  Renaming(const std::string& from, const std::string& to) : from_(from), to_(to) {}
+  void operator()(std::string& name) const {
+    if (name == from_) name = to_;
+  }
+  void inTracks(CharacterDef& def, TrackDef::Target target) const {
+    for (MotionDef& motion : def.motions)
+      for (TrackDef& track : motion.tracks)
+        if (track.target == target) (*this)(track.name);
+  }
+
+ private:
+  std::string from_, to_;  // own: the arguments may be parts of the definition
+};
+
+}  // namespace
+
+void renameJoint(CharacterDef& def, const std::string& from, const std::string& to) {
+  requireRenamable(def.skeleton.joints, "joint", from, to);
+  if (def.rig && def.rig->model && hasName(def.rig->model->joints, from))
+    throw Error("the joint '" + from + "' is one of the imported rig, which knows it by its name");
+  const Renaming rename(from, to);
+  for (JointDef& joint : def.skeleton.joints) rename(joint.name), rename(joint.parent);
+  for (FleshDef* flesh : {&def.flesh, &def.ornaments})
+    for (FleshSolidDef& solid : flesh->solids) {
+      rename(solid.joint);
+      for (DriverDef& driver : solid.drivers) rename(driver.joint);
+    }
+  rename.inTracks(def, TrackDef::Target::joint);
+  if (!def.skin) return;
+  rename(def.skin->bottom.joint), rename(def.skin->top.joint);
+  for (SkinBrushDef& brush : def.skin->brushes) rename(brush.joint);
+}
+
+void renameSolid(CharacterDef& def, const std::string& from, const std::string& to) {
+  requireRenamable(def.flesh.solids, "solid", from, to);
+  const Renaming rename(from, to);
+  for (FleshSolidDef& solid : def.flesh.solids) rename(solid.name);
+  rename.inTracks(def, TrackDef::Target::solid);
+  if (!def.skin) return;
+  for (SkinRegionDef& region : def.skin->regions) rename(region.solid);
+  for (SkinAnchorDef& anchor : def.skin->anchors) rename(anchor.solid);
+}
+
+}  // namespace fascia

@@ -1,0 +1,41 @@
+#include <fascia/skin/grid/grid_attachment.h>
+
+#include <utility>
+
+#include <fascia/math/points.h>
+
+namespace fascia {
+namespace {
+
+class GridPlacer final : public PointPlacer {
+ public:
+  explicit GridPlacer(const GridAttachment& attachment) : attachment_(attachment) {}
+
+  void placeAnchors(const SkinPose& pose, VectorArray& out) override {
+    attachment_.anchors().place(*pose.field, scratch_, out);
+  }
+  void placeFixed(const SkinPose& pose, VectorArray& out) override {
+    for (const GridAttachment::Fixed& f : attachment_.fixed())
+      setPoint(out, f.point, pose.joints[f.joint.index()].point(f.position_joint));
+  }
+  void placeAll(const SkinPose& pose, VectorArray& out) override {
+    attachment_.placements().place(*pose.field, scratch_, out);
+    placeFixed(pose, out);
+  }
+
+ private:
+  const GridAttachment& attachment_;
+  VectorArray scratch_;
+};
+
+}  // namespace
+
+GridAttachment::GridAttachment(TissueAnchors anchors, TissueAnchors placements,
+                               std::vector<Fixed> fixed)
+    : anchors_(std::move(anchors)), placements_(std::move(placements)), fixed_(std::move(fixed)) {}
+
+std::unique_ptr<PointPlacer> GridAttachment::makePlacer() const {
+  return std::make_unique<GridPlacer>(*this);
+}
+
+}  // namespace fascia
