@@ -1,3 +1,5 @@
+#include <filesystem>
+
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
@@ -8,6 +10,10 @@
 
 #include "commands.h"
 #include "console.h"
+#include "example_files.h"
+#include "input_kind.h"
+#include "lively_motion.h"
+#include "shell_word.h"
 
 namespace fascia {
 namespace {
@@ -19,16 +25,31 @@ that has no effect in its file, as a warning: warnings do not fail the check.
 Examples:
   fascia check examples/penguin.fascia.json
   fascia check examples/sky-hook.fascia.json
-  fascia check --json mine.fascia.json yours.fascia.json)";
+  fascia check --json examples/wombat.fascia.json examples/torso.fascia.json)";
 
-// Builds what the file holds; a scene is started too: its script is read then. Returns what it is
-// warned of.
-std::vector<Issue> checkFile(const std::string& path) {
-  if (!isSceneFile(path)) return loadCharacter(path).warnings();
+// A film of it, or a picture of what stands still.
+std::string renderCommand(const std::string& path, const std::string& motion, bool moves) {
+  std::string name = std::filesystem::path(path).filename().string();
+  name = name.substr(0, name.find('.')) + (moves ? ".mp4" : ".png");
+  return "fascia render " + shellWord(path) + motionOption(motion) + " -o " + shellWord(name);
+}
+
+struct Checked {
+  std::vector<Issue> warnings;
+  std::string next;  // the command that shows it
+};
+
+// Builds what the file holds; a scene is started too: its script is read then.
+Checked checkFile(const std::string& path) {
+  if (!isSceneFile(path)) {
+    const Character character = loadCharacter(path);
+    const std::string motion = livelyMotion(character);
+    return {character.warnings(), renderCommand(path, motion, !motion.empty())};
+  }
   const Stage stage = loadStage(path);
   if (!stage.def().view.camera.empty()) parseCamera(stage.def().view.camera);
   const Performance performance(stage);
-  return stage.warnings();
+  return {stage.warnings(), renderCommand(path, {}, true)};
 }
 
 std::string verdict(std::size_t warnings) {
@@ -37,16 +58,21 @@ std::string verdict(std::size_t warnings) {
 
 void check(const std::vector<std::string>& paths, const Console& console) {
   std::vector<Issue> issues;
+  std::string next;
   for (const std::string& path : paths) {
     try {
-      const std::vector<Issue> warnings = checkFile(path);
-      console.warn(warnings);
-      console.say(path + ": " + verdict(warnings.size()));
+      Checked checked;
+      withInput(path, {.command = "check", .character = true, .scene = true},
+                [&] { checked = checkFile(path); });
+      console.warn(checked.warnings);
+      console.say(path + ": " + verdict(checked.warnings.size()));
+      next = checked.next;
     } catch (const Error& error) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());
     }
   }
   if (!issues.empty()) throw Error(std::move(issues));
+  if (paths.size() == 1) console.say("next: " + next);
   console.answer(Json::Object{{"ok", true}, {"issues", Json::List{}}});
 }
 
@@ -57,6 +83,7 @@ void addCheck(CLI::App& program, Console& console) {
   const auto paths = std::make_shared<std::vector<std::string>>();
   command.add_option("FILE", *paths, "One or more *.fascia.json files: characters or scenes")
       ->required()
+      ->transform(exampleFiles())
       ->type_name("");
   console.addFlags(command);
   command.footer(kCheckFooter);

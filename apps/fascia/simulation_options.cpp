@@ -10,6 +10,7 @@
 #include <fascia/base/suggest.h>
 #include <fascia/io/documents/character_file.h>
 
+#include "input_kind.h"
 #include "interrupt.h"
 #include "motion_file.h"
 #include "progress.h"
@@ -125,6 +126,7 @@ Character prepareCharacter(CharacterFile file, SimulationOptions& options, const
 int chooseMotion(const Character& character, const std::string& name) {
   const int motion = character.findMotion(name);
   if (motion >= 0 || name.empty()) return motion;
+  refuseMotionFile(name);
   std::vector<std::string> known;
   for (std::size_t i = 0; i < character.motionCount(); ++i)
     known.push_back(character.motion(i).name);
