@@ -48,7 +48,7 @@ constexpr auto tunables(const SimulationDef*) {
               "Relative; the leapfrog's inner iteration"),
       tunable(&S::correction_tolerance_m, "correction_tolerance_m", "m", {1e-9, 1},
               "A larger correction out of the flesh redoes the step"),
-      tunable(&S::gravity_m_per_s2, "gravity_m_per_s2", "m/s²", {-1000, 1000}, "y is up"),
+      tunable(&S::gravity_m_per_s2, "gravity_m_per_s2", "m/s²", {-1e4, 1e4}, "y is up"),
       tunable(&S::settle_s, "settle_s", "s", {0, 60},
               "Simulated before time 0 in the first posture")};
 }
