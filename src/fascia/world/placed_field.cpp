@@ -43,7 +43,7 @@ void turn(const Mat3& rotation, std::size_t first, std::size_t count, Vectors ve
 
 Vectors from(Vectors vectors, std::size_t first) {
   FASCIA_ASSERT(first <= vectors.count, "the rest of the vectors");
-  return {vectors.x + first, vectors.y + first, vectors.z + first};
+  return {vectors.x + first, vectors.y + first, vectors.z + first, vectors.count - first};
 }
 
 }  // namespace
