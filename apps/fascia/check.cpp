@@ -34,13 +34,13 @@ std::string renderCommand(const std::string& path, const std::string& motion, bo
   return "fascia render " + shellWord(path) + motionOption(motion) + " -o " + shellWord(name);
 }
 
-struct Verdict {
+struct Checked {
   std::vector<Issue> warnings;
-  std::string next;  // the command that shows what was checked
+  std::string next;  // the command that shows it
 };
 
 // Builds what the file holds; a scene is started too: its script is read then.
-Verdict checkFile(const std::string& path) {
+Checked checkFile(const std::string& path) {
   if (!isSceneFile(path)) {
     const Character character = loadCharacter(path);
     const std::string motion = livelyMotion(character);
@@ -52,7 +52,7 @@ Verdict checkFile(const std::string& path) {
   return {stage.warnings(), renderCommand(path, {}, true)};
 }
 
-std::string shown(std::size_t warnings) {
+std::string verdict(std::size_t warnings) {
   return warnings == 0 ? "ok" : fmt::format("ok, {} warning{}", warnings, warnings > 1 ? "s" : "");
 }
 
@@ -61,12 +61,12 @@ void check(const std::vector<std::string>& paths, const Console& console) {
   std::string next;
   for (const std::string& path : paths) {
     try {
-      Verdict verdict;
+      Checked checked;
       withInput(path, {.command = "check", .character = true, .scene = true},
-                [&] { verdict = checkFile(path); });
-      console.warn(verdict.warnings);
-      console.say(path + ": " + shown(verdict.warnings.size()));
-      next = verdict.next;
+                [&] { checked = checkFile(path); });
+      console.warn(checked.warnings);
+      console.say(path + ": " + verdict(checked.warnings.size()));
+      next = checked.next;
     } catch (const Error& error) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());
     }

@@ -277,7 +277,7 @@ TEST(Tunables, ReaderAndBuilderTakeBothEndsOfARangeAndRefuseWhatIsBeyondInTheSam
   EXPECT_GT(character.rows(), 60);
   const Checker<SceneDef> scene(kTunedScene, sceneOf(kTunedScene));
   forEachSceneTable(scene);
-  EXPECT_GT(scene.rows(), 40);
+  EXPECT_GT(scene.rows(), 35);
 }
 
 // The schema of what stands at a place: through objects, lists and alternatives.

@@ -114,7 +114,7 @@ void Stage::checkPaths(Diagnostics& diagnostics) const {
 void Stage::checkScheme(Diagnostics& diagnostics) const {
   const std::string& scheme = def_.simulation.scheme;
   const bool contact = def_.ground || !def_.props.empty() || !def_.characters.empty();
-  if (scheme != "implicit" && contact)
+  if ((scheme == "explicit" || scheme == "energy") && contact)
     diagnostics.error("/simulation/scheme",
                       "found " + quotedName(scheme) + ", but contact needs \"implicit\"",
                       "without ground, props and characters the others can be used");
