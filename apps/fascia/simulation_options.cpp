@@ -12,8 +12,8 @@
 #include <fascia/math/ode/integrators.h>
 
 #include "interrupt.h"
-#include "motion_file.h"
 #include "progress.h"
+#include "report_map.h"
 
 namespace fascia {
 namespace {
