@@ -12,11 +12,14 @@
 #include <fascia/io/glb_export/gltf_writer.h>
 
 #include "commands.h"
+#include "example_files.h"
 #include "grid_bake.h"
+#include "input_kind.h"
 #include "interrupt.h"
 #include "outputs.h"
 #include "rig_bake.h"
 #include "scene_bake.h"
+#include "shell_word.h"
 #include "simulation_options.h"
 #include "takes.h"
 
@@ -44,11 +47,12 @@ A character whose skin is a grid becomes a small .glb of one or more motions, by
 
 Examples:
   fascia bake examples/penguin.fascia.json -o penguin.glb
-  fascia bake fox.fascia.json --motion Gallop -o fox_alive.glb --as bones --helpers 30
-  fascia bake examples/penguin.fascia.json --motions all --targets 32 -o penguin.glb
-  fascia bake human.fascia.json --motion walk.bvh -o walk.glb
+  fascia flesh fox.glb -o fox.fascia.json
+  fascia bake fox.fascia.json --motion Run -o fox_alive.glb
+  fascia bake fox.fascia.json --motion Run --motion Jump --helpers 30 -o fox_both.glb
+  fascia bake examples/penguin.fascia.json --motions all --targets 32 -o penguin_all.glb
   fascia bake examples/sky-hook.fascia.json --seed 7 -o sky-hook.glb -o sky-hook.fcache
-  fascia bake examples/penguin.fascia.json --motion hop -o hop.glb -o hop.fcache --stats hop.json
+  fascia bake examples/penguin.fascia.json --motion waddle -o waddle.fcache --stats waddle.json
   fascia bake examples/penguin.fascia.json --grid 128x64 --fps 30 -o fine.pc2)";
 
 struct BakeOptions {
@@ -167,12 +171,15 @@ void bakeCharacter(BakeOptions& options, const Console& console) {
   Json::Object more;
   if (!made.bakes.empty()) more.push_back({"bakes", std::move(made.bakes)});
   reportRecordings(recordings, made.written, console, more);
+  for (const std::string& file : made.written) {
+    if (endingOf(file) != ".fcache") continue;
+    console.say(fmt::format("next: fascia render {} -o {}", shellWord(file),
+                            shellWord(file.substr(0, file.size() - 7) + ".mp4")));
+    break;
+  }
 }
 
-void bake(BakeOptions& options, const Console& console) {
-  checkFolders(options.outputs);
-  checkFolders({options.stats});
-  const ThreadLimit threads(options.simulation.threads);
+void bakeFile(BakeOptions& options, const Console& console) {
   if (!isSceneFile(options.file)) {
     bakeCharacter(options, console);
     return;
@@ -183,6 +190,14 @@ void bake(BakeOptions& options, const Console& console) {
   bakeScene({options.file, options.outputs, options.stats, options.simulation}, console);
 }
 
+void bake(BakeOptions& options, const Console& console) {
+  checkFolders(options.outputs);
+  checkFolders({options.stats});
+  const ThreadLimit threads(options.simulation.threads);
+  withInput(options.file, {.command = "bake", .character = true, .scene = true},
+            [&] { bakeFile(options, console); });
+}
+
 }  // namespace
 
 void addBake(CLI::App& program, Console& console) {
@@ -191,6 +206,7 @@ void addBake(CLI::App& program, Console& console) {
   const auto options = std::make_shared<BakeOptions>();
   command.add_option("FILE", options->file, "A *.fascia.json file: a character or scene")
       ->required()
+      ->transform(exampleFiles())
       ->type_name("");
   command.add_option("-o,--output", options->outputs, "File to write; may be given several times")
       ->required()

@@ -1,3 +1,5 @@
+#include <filesystem>
+
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
@@ -8,6 +10,10 @@
 
 #include "commands.h"
 #include "console.h"
+#include "example_files.h"
+#include "input_kind.h"
+#include "lively_motion.h"
+#include "shell_word.h"
 
 namespace fascia {
 namespace {
@@ -18,30 +24,42 @@ constexpr const char* kCheckFooter =
 Examples:
   fascia check examples/penguin.fascia.json
   fascia check examples/sky-hook.fascia.json
-  fascia check --json mine.fascia.json yours.fascia.json)";
+  fascia check --json examples/wombat.fascia.json examples/torso.fascia.json)";
 
-// Builds what the file holds; a scene is started too: its script is read then.
-void checkFile(const std::string& path) {
+// A film of it, or a picture of what stands still.
+std::string renderCommand(const std::string& path, const std::string& motion, bool moves) {
+  std::string name = std::filesystem::path(path).filename().string();
+  name = name.substr(0, name.find('.')) + (moves ? ".mp4" : ".png");
+  return "fascia render " + shellWord(path) + motionOption(motion) + " -o " + shellWord(name);
+}
+
+// Builds what the file holds; a scene is started too: its script is read then. Returns the command
+// that shows it.
+std::string checkFile(const std::string& path) {
   if (!isSceneFile(path)) {
-    loadCharacter(path);
-    return;
+    const std::string motion = livelyMotion(loadCharacter(path));
+    return renderCommand(path, motion, !motion.empty());
   }
   const Stage stage = loadStage(path);
   if (!stage.def().view.camera.empty()) parseCamera(stage.def().view.camera);
   const Performance performance(stage);
+  return renderCommand(path, {}, true);
 }
 
 void check(const std::vector<std::string>& paths, const Console& console) {
   std::vector<Issue> issues;
+  std::string next;
   for (const std::string& path : paths) {
     try {
-      checkFile(path);
+      withInput(path, {.command = "check", .character = true, .scene = true},
+                [&] { next = checkFile(path); });
       console.say(path + ": ok");
     } catch (const Error& error) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());
     }
   }
   if (!issues.empty()) throw Error(std::move(issues));
+  if (paths.size() == 1) console.say("next: " + next);
   console.answer(Json::Object{{"ok", true}, {"issues", Json::List{}}});
 }
 
@@ -52,6 +70,7 @@ void addCheck(CLI::App& program, Console& console) {
   const auto paths = std::make_shared<std::vector<std::string>>();
   command.add_option("FILE", *paths, "One or more *.fascia.json files: characters or scenes")
       ->required()
+      ->transform(exampleFiles())
       ->type_name("");
   console.addFlags(command);
   command.footer(kCheckFooter);

@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "compare/comparison.h"
+#include "example_files.h"
 #include "outputs.h"
 
 namespace fascia {
@@ -24,10 +25,11 @@ places show. The camera of a film goes along with a figure that walks away.
 
 Examples:
   fascia compare fox.glb --motion Run -o fox.png
-  fascia compare fox.fascia.json --motion Run -o fox.mp4 --size 1920x1080
-  fascia compare fox.fascia.json --motion Walk -o fox.gif --seconds 2 --turntable
-  fascia compare human.glb --motion walk.bvh -o human.png --wipe --camera front
-  fascia compare human.glb --against dual-quaternions --worst ours -o human.png --zooms 2)";
+  fascia flesh fox.glb -o fox.fascia.json
+  fascia compare fox.fascia.json --motion Run -o fox.mp4 --size 1280x720
+  fascia compare fox.fascia.json --motion Walk -o fox.gif --seconds 0.5 --turntable
+  fascia compare fox.fascia.json --motion Jump -o jump.png --wipe --camera front
+  fascia compare fox.fascia.json --against dual-quaternions --worst ours -o own.png --zooms 2)";
 
 constexpr int kLeastSide = 160;  // pixels; less holds no letters
 
@@ -101,6 +103,7 @@ void addCompare(CLI::App& program, Console& console) {
   const auto options = std::make_shared<CompareOptions>();
   command.add_option("INPUT", options->input, "A character on a rig, or a rigged mesh")
       ->required()
+      ->transform(exampleFiles())
       ->type_name("");
   command.add_option("-o,--output", options->output, "File to write: .png, .mp4 or .gif")
       ->type_name("FILE")

@@ -14,7 +14,12 @@
 
 #include "commands.h"
 #include "console.h"
+#include "example_files.h"
+#include "input_kind.h"
+#include "lively_motion.h"
 #include "outputs.h"
+#include "progress.h"
+#include "shell_word.h"
 
 namespace fascia {
 namespace {
@@ -28,8 +33,8 @@ not, a copy NAME.rig.glb is put beside the character file.
 
 Examples:
   fascia flesh fox.glb -o fox.fascia.json
-  fascia flesh hero.glb --jiggle 0.2 --muscle 0.8 -o hero.fascia.json
-  fascia flesh centimetres.glb --scale 0.01 -o small.fascia.json --fat 0.25)";
+  fascia flesh fox.glb --jiggle 0.2 --muscle 0.8 -o soft_fox.fascia.json
+  fascia flesh fox.glb --scale 0.01 --fat 0.25 -o small_fox.fascia.json)";
 
 struct FleshOptions {
   std::string input, output, report;
@@ -149,10 +154,17 @@ void flesh(const FleshOptions& options, const Console& console) {
   RigFile rig = placeRig(options);
   refuseToOverwrite(rig.copy, options.force);
   const ThreadLimit threads(options.threads);
-  const auto shared =
-      std::make_shared<const RiggedModel>(readRiggedModel(options.input, {options.scale}));
+  std::shared_ptr<const RiggedModel> shared;
+  withInput(options.input, {.command = "flesh", .model = true}, [&] {
+    shared = std::make_shared<const RiggedModel>(readRiggedModel(options.input, {options.scale}));
+  });
   const RiggedModel& model = *shared;
-  FleshedCharacter made = fleshCharacter(shared, options.fit, options.dials);
+  FleshedCharacter made;
+  {
+    ProgressBar progress(console, "fitting flesh");
+    progress.update(0);  // how long it takes is not known
+    made = fleshCharacter(shared, options.fit, options.dials);
+  }
   const FleshFit& fit = made.fit;
   sayTable(fit, console);
   for (const auto& notes : {model.notes, fit.notes}) {
@@ -168,10 +180,12 @@ void flesh(const FleshOptions& options, const Console& console) {
   made.def.rig = rig.def;
   writeCharacterFile(made.def, options.output);
   console.say("wrote " + options.output);
+  const std::string character = shellWord(options.output), name = nameOf(options.output);
   console.say(
-      fmt::format("next: fascia render {0} -o {1}.png --layers muscle,skeleton\n"
-                  "      fascia bake {0} -o {1}.alive.glb",
-                  options.output, nameOf(options.output)));
+      fmt::format("next: fascia render {} --layers muscle,skeleton -o {}\n"
+                  "      fascia bake {}{} -o {}",
+                  character, shellWord(name + ".png"), character, motionOption(livelyMotion(model)),
+                  shellWord(name + ".alive.glb")));
   console.answer(Json::Object{{"ok", true}, {"output", options.output}, {"fit", report}});
 }
 
@@ -183,6 +197,7 @@ void addFlesh(CLI::App& program, Console& console) {
   const auto options = std::make_shared<FleshOptions>();
   command.add_option("INPUT", options->input, "A rigged mesh: .glb, .gltf, .fbx, …")
       ->required()
+      ->transform(exampleFiles())
       ->type_name("");
   command.add_option("-o,--output", options->output, "Character file to write: *.fascia.json")
       ->required()

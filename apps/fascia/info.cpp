@@ -13,7 +13,9 @@
 
 #include "commands.h"
 #include "console.h"
+#include "example_files.h"
 #include "facts.h"
+#include "input_kind.h"
 #include "outputs.h"
 #include "scene_facts.h"
 
@@ -31,7 +33,7 @@ Examples:
   fascia info examples/penguin.fascia.json
   fascia info examples/sky-hook.fascia.json
   fascia info fox.glb
-  fascia info human.fascia.json --motion walk.bvh
+  fascia bake examples/penguin.fascia.json -o penguin.fcache
   fascia info penguin.fcache --json)";
 
 struct InfoOptions {
@@ -198,7 +200,10 @@ void info(const InfoOptions& options, const Console& console) {
   if (options.file.empty())
     describeProgram(facts);
   else
-    describeFile(options, facts);
+    withInput(
+        options.file,
+        {.command = "info", .character = true, .scene = true, .recording = true, .model = true},
+        [&] { describeFile(options, facts); });
   facts.show(console);
 }
 
@@ -212,7 +217,7 @@ void addInfo(CLI::App& program, Console& console) {
       command.add_option("FILE", options->file,
                          "A *.fascia.json or *.fcache file of a character or scene, "
                          "or a rig: .glb, .gltf");
-  file->type_name("");
+  file->transform(exampleFiles())->type_name("");
   command
       .add_option("--motion", options->motion,
                   "Show how this .bvh file's joints would drive the rig's")

@@ -18,7 +18,7 @@ constexpr const char* kProgramFooter = R"(Examples:
 
 Your own rigged character comes alive in two steps:
   fascia flesh fox.glb -o fox.fascia.json
-  fascia bake fox.fascia.json --motion Gallop -o fox_alive.glb
+  fascia bake fox.fascia.json --motion Run -o fox_alive.glb
 
 'fascia COMMAND --help' explains a command.
 Exit codes: 0 done, 1 something is wrong with the input, 2 the command line makes no sense.)";

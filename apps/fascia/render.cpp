@@ -9,7 +9,9 @@
 #include <fascia/render/renderer.h>
 
 #include "commands.h"
+#include "example_files.h"
 #include "film.h"
+#include "input_kind.h"
 #include "interrupt.h"
 #include "outputs.h"
 #include "progress.h"
@@ -29,6 +31,7 @@ Examples:
   fascia render examples/penguin.fascia.json --time 1.5 -o penguin.png
   fascia render examples/penguin.fascia.json --layers skeleton,muscle,skin -o layers.png
   fascia render examples/sky-hook.fascia.json --seed 7 -o sky-hook.mp4
+  fascia bake examples/penguin.fascia.json -o penguin.fcache
   fascia render penguin.fcache --camera az=60,el=10 --size 1280x720 --fps 60 -o penguin.mp4)";
 
 struct RenderOptions {
@@ -86,9 +89,13 @@ void render(RenderOptions& options, const Console& console) {
   const FilmLook look{.camera = options.camera,
                       .layers = options.layers,
                       .aspect = static_cast<double>(size.width) / size.height};
-  const std::unique_ptr<Film> film =
-      makeFilm(options.input, options.simulation,
-               options.video() ? std::optional<double>() : options.time_s, look, console);
+  std::unique_ptr<Film> film;
+  withInput(options.input,
+            {.command = "render", .character = true, .scene = true, .recording = true}, [&] {
+              film = makeFilm(options.input, options.simulation,
+                              options.video() ? std::optional<double>() : options.time_s, look,
+                              console);
+            });
   if (options.video())
     shootVideo(*film, size, options, console);
   else
@@ -133,6 +140,7 @@ void addRender(CLI::App& program, Console& console) {
       .add_option("INPUT", options->input,
                   "A *.fascia.json or *.fcache file of a character or scene")
       ->required()
+      ->transform(exampleFiles())
       ->type_name("");
   command.add_option("-o,--output", options->output, "File to write: .png or .mp4")
       ->type_name("FILE")

@@ -151,8 +151,11 @@ RigBakeReport writeRigBake(const CharacterDef& def, std::span<const Shot> shots,
     clips.push_back(
         {*rig.model, shot.recording, shot.joints_world, shot.recording.motion, rig.scale});
   if (options.as == "cache") return writeRigAsCache(clips.front(), path);
-  if (options.as == "morphs")
+  if (options.as == "morphs") {
+    ProgressBar progress(console, "fitting morph targets");
+    progress.update(0);  // how long it takes is not known
     return writeRigAsMorphs(clips, MorphOptions{.targets = options.targets}, path);
+  }
   ProgressBar progress(console, "fitting bones");
   DecompositionOptions fit;
   fit.helperBones = options.helpers;

@@ -11,6 +11,7 @@
 #include <fascia/io/documents/character_file.h>
 #include <fascia/math/ode/integrators.h>
 
+#include "input_kind.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "report_map.h"
@@ -123,6 +124,7 @@ Character prepareCharacter(CharacterFile file, SimulationOptions& options, const
 int chooseMotion(const Character& character, const std::string& name) {
   const int motion = character.findMotion(name);
   if (motion >= 0 || name.empty()) return motion;
+  refuseMotionFile(name);
   std::vector<std::string> known;
   for (std::size_t i = 0; i < character.motionCount(); ++i)
     known.push_back(character.motion(i).name);

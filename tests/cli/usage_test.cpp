@@ -8,6 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 TEST_F(Cli, HelpOfEveryCommandTeachesByExample) {
   const std::vector<std::vector<std::string>> commands = {
@@ -70,7 +71,7 @@ TEST_F(Cli, MissingFilesEndWithOneAndALine) {
 TEST_F(Cli, CheckAcceptsARightFile) {
   const Outcome outcome = run({"check", "ball.fascia.json"});
   EXPECT_EQ(outcome.exitCode, 0);
-  EXPECT_EQ(outcome.out, "ball.fascia.json: ok\n");
+  EXPECT_THAT(outcome.out, StartsWith("ball.fascia.json: ok\n"));
   EXPECT_THAT(outcome.err, IsEmpty());
 }
 

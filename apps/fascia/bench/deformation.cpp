@@ -7,6 +7,8 @@
 #include "bench/benches.h"
 #include "bench/deformation/contest.h"
 #include "bench/machine.h"
+#include "example_files.h"
+#include "input_kind.h"
 #include "outputs.h"
 #include "simulation_options.h"
 
@@ -22,10 +24,10 @@ Poses: bends (elbow and knee, to --angles), hips, shoulders, wrists, neck; all o
 Motions: the file's own by name, all or none of them; motion capture (.bvh) is put onto the rig.
 
 Examples:
-  fascia bench deformation fox.fascia.json
-  fascia bench deformation fox.fascia.json --poses none --motion Walk --motion Run
-  fascia bench deformation human.fascia.json --motion walk.bvh --pictures /tmp/poses
-  fascia bench deformation human.glb --poses bends --motion none --angles 90 --json)";
+  fascia bench deformation fox.glb
+  fascia bench deformation fox.glb --poses none --motion Walk --motion Run
+  fascia bench deformation fox.glb --poses bends,neck --motion Sit --pictures .
+  fascia bench deformation fox.glb --poses bends --motion none --angles 90 --json)";
 
 struct DeformationOptions : ContestOptions {
   std::vector<std::string> files;
@@ -48,8 +50,10 @@ void runDeformation(const DeformationOptions& options, const Console& console) {
   for (const std::string& file : options.files) {
     try {
       std::vector<Issue> found;
-      const Entrant entrant = readEntrant(file);
-      results.push_back(runContest(entrant, options, console, found));
+      withInput(file, {.command = "bench deformation", .character = true, .model = true}, [&] {
+        const Entrant entrant = readEntrant(file);
+        results.push_back(runContest(entrant, options, console, found));
+      });
       if (!found.empty()) throw Error(std::move(found));
     } catch (const Error& error) {
       addIssues(issues, error, file);
@@ -70,6 +74,7 @@ void addDeformationBench(CLI::App& group, Console& console) {
   const auto options = std::make_shared<DeformationOptions>();
   command.add_option("characters", options->files, "Characters with a rig, or rigged files")
       ->required()
+      ->transform(exampleFiles())
       ->type_name("FILE …");
   command
       .add_option("--motion,--motions", options->motions,

@@ -9,7 +9,7 @@
 #include <fascia/io/documents/character_file.h>
 
 #include "bench/benches.h"
-#include "bench/example_files.h"
+#include "example_files.h"
 #include "simulation_options.h"
 
 namespace fascia {

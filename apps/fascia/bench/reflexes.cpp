@@ -12,9 +12,10 @@
 #include <fascia/world/performance.h>
 
 #include "bench/benches.h"
-#include "bench/example_files.h"
 #include "bench/machine.h"
 #include "console.h"
+#include "example_files.h"
+#include "input_kind.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "simulation_options.h"
@@ -28,7 +29,7 @@ with the seeds 1, 2, 3, … until their scripts call succeed() or fail(), or tim
 
 Examples:
   fascia bench reflexes
-  fascia bench reflexes mine.fascia.json --runs 200)";
+  fascia bench reflexes examples/sky-hook.fascia.json --runs 200)";
 
 struct ReflexOptions {
   std::vector<std::string> scenes;
@@ -74,7 +75,10 @@ std::vector<Run> performAll(const Stage& stage, int runs, const Console& console
 }
 
 Json measure(const std::string& file, int runs, const Console& console) {
-  const Stage stage = loadStage(file);
+  std::optional<Stage> loaded;
+  withInput(file, {.command = "bench reflexes", .scene = true},
+            [&] { loaded.emplace(loadStage(file)); });
+  const Stage& stage = *loaded;
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<Run> all = performAll(stage, runs, console);
   const double wall_s =
@@ -121,6 +125,7 @@ void addReflexesBench(CLI::App& group, Console& console) {
   command
       .add_option("SCENE", options->scenes,
                   "Scene files (default: the sky hook and the hinge-horned monster)")
+      ->transform(exampleFiles())
       ->type_name("");
   command.add_option("--runs", options->runs, "Starts of each (default: 1000)")
       ->type_name("N")

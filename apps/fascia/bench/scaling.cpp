@@ -10,8 +10,9 @@
 #include <fascia/io/documents/character_file.h>
 
 #include "bench/benches.h"
-#include "bench/example_files.h"
 #include "bench/machine.h"
+#include "example_files.h"
+#include "input_kind.h"
 #include "interrupt.h"
 #include "simulation_options.h"
 
@@ -24,7 +25,7 @@ simulated seconds per second of computing.
 
 Examples:
   fascia bench scaling
-  fascia bench scaling mine.fascia.json --motion run --points 1000,10000 --threads 1)";
+  fascia bench scaling examples/wombat.fascia.json --points 1000,10000 --threads 1)";
 
 constexpr double kFrame_s = 1.0 / 60;
 // Frames that are simulated, but not timed: caches and scratch memory warm up.
@@ -67,7 +68,9 @@ ScalingResult measure(const std::string& file, const BuildOptions& build, int th
                       const ScalingOptions& options) {
   const ThreadLimit limit(threads);
   const std::size_t heapBefore = heapInUse_bytes();
-  const auto character = std::make_unique<const Character>(loadCharacter(file, build));
+  std::unique_ptr<const Character> character;
+  withInput(file, {.command = "bench scaling", .character = true},
+            [&] { character = std::make_unique<const Character>(loadCharacter(file, build)); });
   if (!character->skin()) throw Error("the character has no skin to measure");
   const int motion = chooseMotion(*character, options.motion);
   CharacterState state = initialState(*character, character->source(motion));
@@ -153,6 +156,7 @@ void addScalingBench(CLI::App& group, Console& console) {
   CLI::App& command = *group.add_subcommand("scaling", "Time and memory against skin points");
   const auto options = std::make_shared<ScalingOptions>();
   command.add_option("character", options->character, "Character file (default: the penguin)")
+      ->transform(exampleFiles())
       ->type_name("CHARACTER");
   command.add_option("--motion", options->motion, "Motion to simulate (default: the first)")
       ->type_name("NAME");

@@ -10,6 +10,7 @@
 #include <fascia/io/rig_import/rig_import.h>
 
 #include "film_parts.h"
+#include "input_kind.h"
 #include "outputs.h"
 #include "progress.h"
 
@@ -65,7 +66,9 @@ Subject prepareSubject(const std::string& input, SimulationOptions& options,
     if (!options.motion.empty()) throw Error("--motion: a cache holds one motion already");
     return cachedSubject(input);
   }
-  CharacterFile file = readSubject(input, console);
+  CharacterFile file;
+  withInput(input, {.command = "compare", .character = true, .recording = true, .model = true},
+            [&] { file = readSubject(input, console); });
   requireRig(file.def, input);
   Character character = prepareCharacter(std::move(file), options, console);
   const int motion = chooseMotion(character, options.motion);

@@ -1,11 +1,16 @@
 #include <fascia/baking/bone_tracks.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include <fascia/base/parallel.h>
 
 namespace fascia {
+
+double sizeOf(std::span<const Vec3> points) {
+  Box box;
+  for (const Vec3& p : points) box.add(p);
+  return box.empty() ? 0 : box.size().norm();
+}
 
 Vec3 blendPoint(const Vec3& rest, const PointWeights& weights, const BoneTracks& bones,
                 std::size_t frame) {
@@ -16,31 +21,27 @@ Vec3 blendPoint(const Vec3& rest, const PointWeights& weights, const BoneTracks&
   return sum;
 }
 
-void squaredErrors(const SkinningProblem& problem, std::span<const PointWeights> weights,
-                   const BoneTracks& bones, FrameRange frames, std::vector<double>& error) {
-  error.resize(problem.pointCount());
+std::vector<PointError> pointErrors(const SkinningProblem& problem,
+                                    std::span<const PointWeights> weights, const BoneTracks& bones,
+                                    FrameRange frames) {
+  std::vector<PointError> errors(problem.pointCount());
   parallelFor(problem.pointCount(), [&](std::size_t i) {
-    double sum = 0;
     for (std::size_t f = frames.first; f < frames.end; ++f) {
-      sum += (blendPoint(problem.rest_m[i], weights[i], bones, f) -
-              problem.target(i, f).cast<double>())
-                 .squaredNorm();
+      const double e = (blendPoint(problem.rest_m[i], weights[i], bones, f) -
+                        problem.target(i, f).cast<double>())
+                           .squaredNorm();
+      errors[i].sum_m2 += e;
+      errors[i].largest_m2 = std::max(errors[i].largest_m2, e);
     }
-    error[i] = sum;
   });
+  return errors;
 }
 
-double largestError(const SkinningProblem& problem, std::span<const PointWeights> weights,
-                    const BoneTracks& bones) {
-  std::vector<double> largest(problem.pointCount(), 0.0);
-  parallelFor(problem.pointCount(), [&](std::size_t i) {
-    for (std::size_t f = 0; f < problem.frameCount; ++f) {
-      largest[i] = std::max(largest[i], (blendPoint(problem.rest_m[i], weights[i], bones, f) -
-                                         problem.target(i, f).cast<double>())
-                                            .squaredNorm());
-    }
-  });
-  return largest.empty() ? 0 : std::sqrt(*std::max_element(largest.begin(), largest.end()));
+void squaredErrors(const SkinningProblem& problem, std::span<const PointWeights> weights,
+                   const BoneTracks& bones, FrameRange frames, std::vector<double>& error) {
+  error.clear();
+  for (const PointError& e : pointErrors(problem, weights, bones, frames))
+    error.push_back(e.sum_m2);
 }
 
 }  // namespace fascia

@@ -44,6 +44,9 @@ struct SkinningProblem {
   }
 };
 
+// Diagonal of the box around points; 0 if there are none.
+double sizeOf(std::span<const Vec3> points);
+
 // Where linear blend skinning puts a point.
 Vec3 blendPoint(const Vec3& rest, const PointWeights& weights, const BoneTracks& bones,
                 std::size_t frame);
@@ -57,8 +60,12 @@ struct FrameRange {
 void squaredErrors(const SkinningProblem& problem, std::span<const PointWeights> weights,
                    const BoneTracks& bones, FrameRange frames, std::vector<double>& error);
 
-// Over all points and frames.
-double largestError(const SkinningProblem& problem, std::span<const PointWeights> weights,
-                    const BoneTracks& bones);
+// The same with the largest squared distance.
+struct PointError {
+  double sum_m2 = 0, largest_m2 = 0;
+};
+std::vector<PointError> pointErrors(const SkinningProblem& problem,
+                                    std::span<const PointWeights> weights, const BoneTracks& bones,
+                                    FrameRange frames);
 
 }  // namespace fascia

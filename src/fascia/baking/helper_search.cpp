@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <fascia/baking/helper_moments.h>
+
 namespace fascia {
 namespace {
 
@@ -45,11 +47,8 @@ HelperSearch::HelperSearch(const SkinningProblem& problem, std::vector<FrameRang
       options_(options),
       fit_(problem, graph, rigWeights, rigBoneCount_, options.influences),
       bones_(std::move(bones)),
-      weights_(rigWeights.begin(), rigWeights.end()) {
-  Box box;
-  for (const Vec3& p : problem.rest_m) box.add(p);
-  size_m_ = box.size().norm();
-}
+      weights_(rigWeights.begin(), rigWeights.end()),
+      size_m_(sizeOf(problem.rest_m)) {}
 
 void HelperSearch::run() {
   fit_.fit(bones_, helpers_, weights_);
@@ -127,7 +126,8 @@ void HelperSearch::refine() {
 }
 
 void HelperSearch::round() {
-  fitHelperMotions(problem_, weights_, rigBoneCount_, kSweeps, bones_);
+  const HelperMoments moments(problem_.rest_m, weights_, rigBoneCount_, bones_.boneCount());
+  moments.fit(&problem_, kSweeps, bones_);
   updateReach();
   fit_.fit(bones_, helpers_, weights_);
   done_ += roundOf(static_cast<int>(helpers_.size()));

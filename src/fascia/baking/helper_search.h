@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <fascia/baking/bone_tracks.h>
-#include <fascia/baking/helper_bones.h>
+#include <fascia/baking/helper_seeds.h>
 #include <fascia/baking/point_graph.h>
 #include <fascia/baking/weight_fit.h>
 

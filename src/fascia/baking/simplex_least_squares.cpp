@@ -1,7 +1,5 @@
 #include <fascia/baking/simplex_least_squares.h>
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -12,8 +10,8 @@ namespace {
 // So many may differ from 0 before they are thinned out: as many as the true optimum has, mostly.
 constexpr int kMostMembers = 12;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostMembers, 1>;
-using SmallMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostMembers, kMostMembers>;
+// G is positive definite; rounding must not make it singular.
+constexpr double kLeastPivot = 1e-300;
 
 // So many candidates are tried before the weights count as the best: the second or third in the
 // order of slopes pays now and then where the first does not.
@@ -38,8 +36,18 @@ class Support {
     if (size_ == 0) add(bestSingle(), 1);
     w_.head(size_) /= w_.head(size_).sum();
   }
+  // The inverse of G grows by a row: with v = G⁻¹ u, u the new column's part among the members, and
+  // s = G_cc - u·v, it is G⁻¹ + v vᵀ / s, bordered by -v / s and 1 / s.
   void add(int candidate, double weight) {
     assert(size_ < kMostMembers);
+    SmallVector u(size_);
+    for (int k = 0; k < size_; ++k) u[k] = (*G_)(member_[at(k)], candidate);
+    const SmallVector v = inverse_.topLeftCorner(size_, size_) * u;
+    const double s = std::max((*G_)(candidate, candidate) - u.dot(v), kLeastPivot);
+    inverse_.topLeftCorner(size_, size_) += v * v.transpose() / s;
+    inverse_.col(size_).head(size_) = -v / s;
+    inverse_.row(size_).head(size_) = -v.transpose() / s;
+    inverse_(size_, size_) = 1 / s;
     member_[at(size_)] = candidate;
     w_[size_++] = weight;
   }
@@ -70,7 +78,7 @@ class Support {
   // Takes out the member whose loss raises the cost least. With H the inverse of G on the plane
   // Σ w = 1, taking member k out costs w_k² / (2 H_kk).
   void dropLeastMissed() {
-    const SmallVector ones = inverse_.rowwise().sum();
+    const SmallVector ones = inverse_.topLeftCorner(size_, size_).rowwise().sum();
     const double total = ones.sum();
     int least = 0;
     double leastCost = 0;
@@ -106,24 +114,24 @@ class Support {
     }
     return best;
   }
+  // The last member takes the place of the one that leaves; the inverse without it is the rest of
+  // the inverse, less its column times its row over its pivot.
   void remove(int k) {
-    for (int i = k; i + 1 < size_; ++i) {
-      member_[at(i)] = member_[at(i) + 1];
-      w_[i] = w_[i + 1];
-    }
-    --size_;
+    const int last = --size_;
+    member_[at(k)] = member_[at(last)];
+    w_[k] = w_[last];
+    inverse_.row(k).swap(inverse_.row(last));
+    inverse_.col(k).swap(inverse_.col(last));
+    const SmallVector gone = inverse_.col(last).head(size_);
+    inverse_.topLeftCorner(size_, size_) -= gone * gone.transpose() / inverse_(last, last);
   }
   // The optimum over the members with Σ w = 1 but without w ≥ 0.
   SmallVector solveEquality() {
-    SmallMatrix A(size_, size_);
     SmallVector b(size_);
-    for (int r = 0; r < size_; ++r) {
-      for (int c = 0; c < size_; ++c) A(r, c) = (*G_)(member_[at(r)], member_[at(c)]);
-      b[r] = (*g_)[member_[at(r)]];
-    }
-    inverse_ = A.llt().solve(SmallMatrix::Identity(size_, size_));
-    const SmallVector ones = inverse_.rowwise().sum();
-    const SmallVector free = inverse_ * b;
+    for (int r = 0; r < size_; ++r) b[r] = (*g_)[member_[at(r)]];
+    const auto inverse = inverse_.topLeftCorner(size_, size_);
+    const SmallVector ones = inverse.rowwise().sum();
+    const SmallVector free = inverse * b;
     multiplier_ = (1 - free.sum()) / ones.sum();
     return free + multiplier_ * ones;
   }
@@ -133,7 +141,8 @@ class Support {
   std::array<int, kMostMembers> member_{};
   int size_ = 0;
   Eigen::Matrix<double, kMostMembers, 1> w_ = Eigen::Matrix<double, kMostMembers, 1>::Zero();
-  SmallMatrix inverse_;  // of G, restricted to the members
+  // Of G, restricted to the members: what is beyond them has no meaning.
+  Eigen::Matrix<double, kMostMembers, kMostMembers> inverse_;
   double multiplier_ = 0, cost_ = 0;
 };
 

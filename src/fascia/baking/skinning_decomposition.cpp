@@ -6,7 +6,7 @@
 
 #include <fascia/baking/blended_frames.h>
 #include <fascia/baking/bone_tracks.h>
-#include <fascia/baking/helper_bones.h>
+#include <fascia/baking/helper_moments.h>
 #include <fascia/baking/helper_search.h>
 #include <fascia/base/error.h>
 #include <fascia/base/parallel.h>
@@ -50,13 +50,19 @@ FittedFrames fittedFrames(std::size_t count, std::vector<std::size_t> motionFram
   return out;
 }
 
+std::vector<Vec3> doubles(std::span<const Eigen::Vector3f> points) {
+  std::vector<Vec3> out;
+  out.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) out.push_back(p.cast<double>());
+  return out;
+}
+
 // Frames of a surface, and those in which it shall be kept, as one.
 SkinningProblem problemOf(std::span<const Eigen::Vector3f> rest, const PointFrames& frames,
                           std::span<const std::size_t> chosen, const PointFrames& kept = {}) {
   SkinningProblem problem;
   problem.frameCount = chosen.size() + kept.size();
-  problem.rest_m.reserve(rest.size());
-  for (const Eigen::Vector3f& p : rest) problem.rest_m.push_back(p.cast<double>());
+  problem.rest_m = doubles(rest);
   problem.target_m.resize(rest.size() * problem.frameCount);
   for (std::size_t k = 0; k < problem.frameCount; ++k) {
     const std::vector<Eigen::Vector3f>& frame =
@@ -81,48 +87,69 @@ BoneTracks tracksOf(const BoneFrames& bones, std::span<const std::size_t> chosen
   return tracks;
 }
 
-// Helpers' motions in frames [first, last): at first as they lie to their parents in the nearest
-// fitted frame; on them where there is none.
+// Helpers' motions in all frames: at first as they lie to their parents in the nearest fitted
+// frame; on them where there is none.
 class HelperSpread {
  public:
   HelperSpread(std::span<const Eigen::Vector3f> rest, const SkinningDecomposition& found,
-               const BoneFrames& bones, const PointFrames& targets)
-      : rest_(rest), found_(found), bones_(bones), targets_(targets) {}
+               const BoneFrames& bones)
+      : rest_(rest), found_(found), bones_(bones) {}
 
   // The frames of `bones` that the helpers' tracks belong to, increasing.
   void startFrom(std::span<const std::size_t> fitted) { fitted_ = fitted; }
 
-  // Helper, frame. Collects the errors too.
-  std::vector<std::vector<Transform>> run() {
-    std::vector<std::vector<Transform>> tracks(found_.helpers.size());
-    for (std::size_t first = 0; first < bones_.size(); first += kFramesPerBlock) {
-      block(first, std::min(bones_.size(), first + kFramesPerBlock), tracks);
-    }
-    return tracks;
+  // Helper, frame.
+  std::vector<std::vector<Transform>> run(const PointFrames& targets) {
+    return run(&targets, {}, false);
+  }
+  // … and the errors.
+  std::vector<std::vector<Transform>> runAndMeasure(const PointFrames& targets) {
+    return run(&targets, {}, true);
+  }
+  // … where the targets are what these weights make of the rig's own bones.
+  std::vector<std::vector<Transform>> runTo(std::span<const PointWeights> targetWeights) {
+    return run(nullptr, targetWeights, false);
   }
   double rms_m() const {
     return std::sqrt(sum_m2_ / static_cast<double>(rest_.size() * bones_.size()));
   }
-  double max_m() const { return max_m_; }
+  double max_m() const { return std::sqrt(max_m2_); }
 
  private:
-  void block(std::size_t first, std::size_t last, std::vector<std::vector<Transform>>& tracks) {
+  std::vector<std::vector<Transform>> run(const PointFrames* targets,
+                                          std::span<const PointWeights> targetWeights,
+                                          bool measured) {
+    std::vector<std::vector<Transform>> tracks(found_.helpers.size());
+    const std::vector<Vec3> rest = doubles(rest_);
+    const std::size_t rigBones = bones_.empty() ? 0 : bones_[0].size();
+    const HelperMoments moments(rest, found_.weights, rigBones, rigBones + tracks.size(),
+                                targetWeights);
+    for (std::size_t first = 0; first < bones_.size(); first += kFramesPerBlock) {
+      const std::size_t last = std::min(bones_.size(), first + kFramesPerBlock);
+      block(moments, targets, first, last, measured, tracks);
+    }
+    return tracks;
+  }
+
+  void block(const HelperMoments& moments, const PointFrames* targets, std::size_t first,
+             std::size_t last, bool measured, std::vector<std::vector<Transform>>& tracks) {
     std::vector<std::size_t> chosen(last - first);
     std::iota(chosen.begin(), chosen.end(), first);
-    const SkinningProblem problem = problemOf(rest_, targets_, chosen);
+    SkinningProblem problem;
+    if (targets) problem = problemOf(rest_, *targets, chosen);
     BoneTracks all = tracksOf(bones_, chosen);
     const std::size_t rigBones = all.boneCount();
     for (std::size_t h = 0; h < tracks.size(); ++h) all.add(start(h, first, last));
-    fitHelperMotions(problem, found_.weights, rigBones,
-                     fitted_.empty() ? kSweepsFromRest : kLastSweeps, all);
+    moments.fit(targets ? &problem : nullptr, fitted_.empty() ? kSweepsFromRest : kLastSweeps, all);
     for (std::size_t h = 0; h < tracks.size(); ++h) {
       const std::span<const Transform> track = all.track(rigBones + h);
       tracks[h].insert(tracks[h].end(), track.begin(), track.end());
     }
-    std::vector<double> error_m2;
-    squaredErrors(problem, found_.weights, all, {0, chosen.size()}, error_m2);
-    sum_m2_ = std::accumulate(error_m2.begin(), error_m2.end(), sum_m2_);
-    max_m_ = std::max(max_m_, largestError(problem, found_.weights, all));
+    if (!measured) return;
+    for (const PointError& e : pointErrors(problem, found_.weights, all, {0, chosen.size()})) {
+      sum_m2_ += e.sum_m2;
+      max_m2_ = std::max(max_m2_, e.largest_m2);
+    }
   }
 
   std::vector<Transform> start(std::size_t helper, std::size_t first, std::size_t last) const {
@@ -146,9 +173,8 @@ class HelperSpread {
   std::span<const Eigen::Vector3f> rest_;
   const SkinningDecomposition& found_;
   const BoneFrames& bones_;
-  const PointFrames& targets_;
   std::span<const std::size_t> fitted_;
-  double sum_m2_ = 0, max_m_ = 0;
+  double sum_m2_ = 0, max_m2_ = 0;
 };
 
 // Leaves out helpers that nothing follows.
@@ -192,8 +218,8 @@ void collect(std::span<const Eigen::Vector3f> rest, const HelperSearch& fitted,
 bool isPlain(std::span<const Eigen::Vector3f> rest, std::span<const PointWeights> weights,
              const BoneFrames& bones, const PointFrames& frames, SkinningDecomposition& out) {
   const SkinningDecomposition plain{{}, {weights.begin(), weights.end()}};
-  HelperSpread spread(rest, plain, bones, frames);
-  spread.run();
+  HelperSpread spread(rest, plain, bones);
+  spread.runAndMeasure(frames);
   Box box;
   for (const Eigen::Vector3f& p : rest) box.add(p.cast<double>());
   if (spread.max_m() > kPlain * box.size().norm()) return false;
@@ -251,7 +277,14 @@ std::vector<std::vector<Transform>> fitHelpers(std::span<const Eigen::Vector3f> 
                                                const SkinningDecomposition& found,
                                                const BoneFrames& bones,
                                                const PointFrames& targets) {
-  return HelperSpread(rest, found, bones, targets).run();
+  return HelperSpread(rest, found, bones).run(targets);
+}
+
+std::vector<std::vector<Transform>> fitHelpersToSkinning(std::span<const Eigen::Vector3f> rest,
+                                                         const SkinningDecomposition& found,
+                                                         const BoneFrames& bones,
+                                                         std::span<const PointWeights> weights) {
+  return HelperSpread(rest, found, bones).runTo(weights);
 }
 
 double restingError_m(std::span<const Eigen::Vector3f> rest, const SkinningDecomposition& found,
@@ -287,9 +320,9 @@ SkinningDecomposition decomposeSkinning(std::span<const Eigen::Vector3f> rest,
                       tracksOf(bones, chosen, options.kept), options);
   search.run();
   collect(rest, search, out);
-  HelperSpread spread(rest, out, bones, frames);
+  HelperSpread spread(rest, out, bones);
   spread.startFrom(chosen);
-  std::vector<std::vector<Transform>> tracks = spread.run();
+  std::vector<std::vector<Transform>> tracks = spread.runAndMeasure(frames);
   for (std::size_t h = 0; h < tracks.size(); ++h) out.helpers[h].world = std::move(tracks[h]);
   out.rms_m = spread.rms_m();
   out.max_m = spread.max_m();

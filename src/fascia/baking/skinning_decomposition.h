@@ -58,6 +58,13 @@ std::vector<std::vector<Transform>> fitHelpers(std::span<const Eigen::Vector3f> 
                                                const SkinningDecomposition& found,
                                                const BoneFrames& bones, const PointFrames& targets);
 
+// The same where `targets` are what `weights` make of the rig's own bones, as in plainSkinning():
+// as fast for any number of points.
+std::vector<std::vector<Transform>> fitHelpersToSkinning(std::span<const Eigen::Vector3f> rest,
+                                                         const SkinningDecomposition& found,
+                                                         const BoneFrames& bones,
+                                                         std::span<const PointWeights> weights);
+
 // How far the surface is from `targets` at most where helpers rest on their parents.
 double restingError_m(std::span<const Eigen::Vector3f> rest, const SkinningDecomposition& found,
                       const BoneFrames& bones, const PointFrames& targets);

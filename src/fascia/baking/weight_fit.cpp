@@ -37,12 +37,6 @@ void sortUnique(std::vector<T>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-double sizeOf(const std::vector<Vec3>& points) {
-  Box box;
-  for (const Vec3& p : points) box.add(p);
-  return box.empty() ? 0 : box.size().norm();
-}
-
 // Heaviest first; equal ones by bone, so that the order is always the same.
 PointWeights packed(std::span<const std::size_t> bones, const CandidateVector& w) {
   std::vector<std::pair<double, std::size_t>> order;

@@ -125,13 +125,25 @@ float ornamentRoughness(const FleshSolidDef& def) {
   return eye || dark ? 0.06f : 0.36f;
 }
 
+// Segments around a solid, so that its outline is round in a picture as high as height_m: flat
+// pieces of a circle dip by radius · (1 − cos(π / segments)).
+int segmentsFor(const Solid& solid, double height_m, int most) {
+  constexpr double kDip = 3e-4;  // of the height: a quarter of a pixel of 720
+  constexpr double kFewest = 10;
+  const double radius_m = 0.5 * solid.bounds().size().maxCoeff();
+  const double segments = kPi * std::sqrt(radius_m / (2 * kDip * height_m));
+  return static_cast<int>(
+      std::ceil(std::clamp(segments, kFewest, std::max<double>(kFewest, most))));
+}
+
 void addOrnaments(const Character& character, const CharacterState& state,
-                  const SceneOptions& options, Scene& scene) {
+                  const SceneOptions& options, double height_m, Scene& scene) {
   for (std::size_t i = 0; i < state.ornaments.solidCount(); ++i) {
     const SolidId id(static_cast<std::int64_t>(i));
     const FleshSolidDef& def = character.ornaments().def(id);
     Drawable ornament;
-    ornament.mesh = state.ornaments.solid(id).tessellate(options.ornament_detail);
+    const Solid& solid = state.ornaments.solid(id);
+    ornament.mesh = solid.tessellate(segmentsFor(solid, height_m, options.ornament_detail));
     ornament.world = state.ornaments.frame(id);
     ornament.material.color = rgb(def.color);
     ornament.material.roughness = ornamentRoughness(def);
@@ -198,7 +210,7 @@ void addCharacter(const Character& character, const CharacterState& state, const
   if (layers.skeleton) addBones(character, state, layers.muscle, scene);
   if (layers.muscle) addMuscles(character, state, options, height_m, scene);
   if (!layers.skin) return;
-  addOrnaments(character, state, options, scene);
+  addOrnaments(character, state, options, height_m, scene);
   if (!skin.positions.empty())
     (hasRig(character) ? addRigSkin : addGridSkin)(character, skin, options, height_m, scene);
 }

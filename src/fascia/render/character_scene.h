@@ -26,7 +26,7 @@ struct SceneOptions {
   Box framing;  // what the camera frames, e.g. over a whole motion; empty = this frame
   const Reach* reach = nullptr;  // instead of `framing`, more tightly; must outlive the call
   double aspect = 16.0 / 9;
-  int ornament_detail = 24;  // segments around; more do not show
+  int ornament_detail = 24;  // segments around at most; more do not show
   int muscle_detail = 40;    // … of muscles, whose fibres follow the facets
 };
 

@@ -19,6 +19,9 @@ constexpr double kResting = 1e-5;
 constexpr double kRestingElsewhere = 5e-4, kFollowed = 1e-3;
 // Poses of other motions in which the weights shall play them too.
 constexpr std::size_t kKeptPoses = 45;
+// Of the whole work: after the search for helpers, and after what they do in other motions. The
+// rest is measuring.
+constexpr double kSearched = 0.75, kAllFollowed = 0.9;
 // Helpers' keys in other motions are at most so dense; else they are where the joints' own are.
 constexpr double kOthersRate_hz = 30;
 
@@ -82,7 +85,7 @@ class BoneWriter {
     const BoneFrames bones = other.bones(model_, times_s);
     const PointFrames targets = plainSkinning(model_.points_m, model_.weights, bones);
     if (onParents_ && restingError_m(model_.points_m, found_, bones, targets) <= least_m) return;
-    const auto tracks = fitHelpers(model_.points_m, found_, bones, targets);
+    const auto tracks = fitHelpersToSkinning(model_.points_m, found_, bones, model_.weights);
     std::vector<float> clock;
     clock.reserve(times_s.size());
     for (const double t : times_s) clock.push_back(static_cast<float>(other.start_s + t));
@@ -353,12 +356,22 @@ RigBakeReport writeRigAsBones(std::span<const RigClip> clips, const Decompositio
                               const std::string& path) {
   RigSource source = RigSource::open(clips);
   const std::vector<OtherMotion> others = otherMotions(source);
-  const SkinningDecomposition found = decompose(clips, others, options);
+  const auto tell = [&](double share) {
+    if (options.progress) options.progress(share);
+  };
+  DecompositionOptions search = options;
+  search.progress = [&](double share) { tell(kSearched * share); };
+  const SkinningDecomposition found = decompose(clips, others, std::move(search));
   BoneWriter writer(source, found);
   const std::vector<PlayedClip> played = writer.write();
   if (!found.plain) {
-    for (const OtherMotion& other : others) writer.follow(other);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      writer.follow(others[k]);
+      tell(kSearched + (kAllFollowed - kSearched) * static_cast<double>(k + 1) /
+                           static_cast<double>(others.size()));
+    }
   }
+  tell(kAllFollowed);
   source.document.writeGlb(path);
   RigBakeReport report;
   report.plain = found.plain;

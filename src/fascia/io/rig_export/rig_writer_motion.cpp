@@ -200,7 +200,7 @@ BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip) {
   bool whole = false;
   if (out.index >= 0) {
     std::vector<std::string> notes;
-    const GltfClip old = readGltfClips(source.document, source.scene, notes)[at(out.index)];
+    const GltfClip old = readGltfClip(source.document, source.scene, at(out.index), notes);
     whole = isWhole(clip, old) && movedAsTheFile(clip);
     if (whole) out.start_s = static_cast<float>(old.start_s());
     out.keepsJoints = whole && playsAsRecorded(source, clip, out.index, out.start_s);

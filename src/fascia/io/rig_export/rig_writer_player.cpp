@@ -21,7 +21,7 @@ RigPlayer::RigPlayer(const GltfDocument& document, std::span<const RigPart> part
   readSkins();
   for (const RigPart& part : parts) readPart(part);
   if (animation < 0) return;
-  clip_ = readGltfClips(document, scene_, notes_).at(at(animation));
+  clip_ = readGltfClip(document, scene_, at(animation), notes_);
   readWeightTracks(animation);
 }
 

@@ -26,7 +26,8 @@ std::vector<float> keyOf(const Frame& frame) {
   const Background& background = frame.scene->background;
   std::vector<float> key{static_cast<float>(frame.width), static_cast<float>(frame.height),
                          background.vignette};
-  append(frame.clipFromWorld, key);
+  append(frame.viewFromWorld, key);  // the near and far planes follow the subject, and do not show
+  append(frame.tanHalfFov, key);
   append(studio.key, frame.keyDirection, key);
   append(studio.fill, frame.fillDirection, key);
   append(studio.rim, frame.rimDirection, key);

@@ -22,7 +22,8 @@ float largestScatter(const Scene& scene) {
   return scatter_m;
 }
 
-// The box of what is near enough to the ground to darken it, and of its shadow on the ground.
+// Around all places of the ground at height_m that the subject darkens, by being near or by its
+// shadow.
 std::vector<Vec3> darkenedBy(const Frame& frame, double height_m) {
   const double radius_m = static_cast<double>(frame.subjectRadius_m);
   const double near_m = kOcclusionRadius * radius_m;
@@ -32,13 +33,13 @@ std::vector<Vec3> darkenedBy(const Frame& frame, double height_m) {
   for (const Vec3& corner : cornersOf(frame.subject)) {
     const double along_m = std::max(corner.y() - height_m, 0.0) / light.y();
     const Vec3 foot = corner - along_m * light;
-    // The penumbra widens with the way, and is stretched where the light is low.
-    const double soft_m = (spread * along_m + 0.15 * radius_m) / light.y();
+    // The penumbra widens with the way, and is stretched where the light is low. The rest is how
+    // far blockers are searched for.
+    const double soft_m = (spread * along_m + 0.08 * radius_m) / light.y();
     for (const auto& [center, reach_m] : {std::pair(corner, near_m), std::pair(foot, soft_m)})
-      for (const Vec3& p :
-           cornersOf({center - Vec3(reach_m, 0, reach_m), center + Vec3(reach_m, 0, reach_m)}))
-        points.emplace_back(p.x(), height_m, p.z());
-    points.push_back(corner);
+      for (const double x : {-reach_m, reach_m})
+        for (const double z : {-reach_m, reach_m})
+          points.emplace_back(center.x() + x, height_m, center.z() + z);
   }
   return points;
 }

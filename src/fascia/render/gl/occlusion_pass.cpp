@@ -1,6 +1,7 @@
 #include <fascia/render/gl/occlusion_pass.h>
 
 #include <cmath>
+#include <optional>
 
 #include <fascia/render/shaders/sources.h>
 
@@ -50,6 +51,9 @@ void OcclusionPass::drawGeometry(const Frame& frame) {
     const bool ground = item.material().kind == Material::Kind::ground;
     if (!ground && !item.casts()) continue;
     geometryProgram_.set("worldFromObject", item.worldFromObject);
+    // Floor that nothing darkens is left out: it would be worked on for nothing.
+    std::optional<ScissorTo> darkened;
+    if (ground) darkened.emplace(frame.shadowedFloor, width_, height_);
     item.drawSeenSides();
   }
 }

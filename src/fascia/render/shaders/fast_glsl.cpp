@@ -44,7 +44,9 @@ vec3 radiance(vec3 n, vec3 v, Occlusion o) {
   vec3 around = vec3(wrap);
 #endif
   vec3 facing = max((dot(n, keyDirection) + around) / (1.0 + around), 0.0);
-  vec3 light = facing * o.key * keyColor + 0.92 * ambientLight(n);
+  // Where a surface turns away it shades itself: the map's hard edge there would only show.
+  float key = mix(1.0, o.key, smoothstep(0.0, 0.35, dot(n, keyDirection)));
+  vec3 light = facing * key * keyColor + 0.92 * ambientLight(n);
   vec3 h = normalize(v + keyDirection);
   float rough = max(roughness, 0.12), r2 = rough * rough, r4 = r2 * r2;
   float nh = max(dot(n, h), 0.0), d = nh * nh * (r4 - 1.0) + 1.0;

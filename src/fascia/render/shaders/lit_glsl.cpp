@@ -9,6 +9,7 @@ in float curvature_per_m;
 uniform vec3 eye_world, baseColor;  // baseColor is linear
 uniform float roughness, scatter_m, translucency, opacity, ghost, thicknessScale_m;
 uniform float metallic, wrap;
+uniform vec2 targetSize;  // pixels
 uniform int textured;
 uniform sampler2D colorTexture, scatterLookup, noiseTexture;
 layout(location = 0) out vec4 result;

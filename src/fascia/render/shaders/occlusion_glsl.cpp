@@ -42,12 +42,13 @@ vec2 disc(int i, int count, float turn) {
 }
 
 // Loops of no turns stand where an early return would: on a processor a branch costs both sides.
-float openness(vec3 p, vec3 n, float turn) {
+float openness(vec3 p, vec3 n, float turn, bool seen) {
   float radius_uv = 0.5 * occlusionRadius_m / (p.z * -tanHalfFov.y);
   vec2 scale = min(radius_uv, 0.35) * vec2(tanHalfFov.y / tanHalfFov.x, 1.0);
   vec2 size = vec2(textureSize(geometry, 0));
   float r2 = occlusionRadius_m * occlusionRadius_m, sum = 0.0;
-  for (int i = 0; i < kOcclusionTaps; ++i) {
+  int turns = seen ? kOcclusionTaps : 0;
+  for (int i = 0; i < turns; ++i) {
     // On the texel's middle, where its depth was taken: floors seen flatly would shade themselves.
     vec2 at = screen + disc(i, kOcclusionTaps, turn) * scale;
     at = (floor(at * size) + 0.5) / size;
@@ -61,14 +62,14 @@ float openness(vec3 p, vec3 n, float turn) {
   return clamp(1.0 - 2.4 * sum / float(kOcclusionTaps), 0.0, 1.0);
 }
 
-float keyLight(vec3 p, vec3 n, float turn) {
+float keyLight(vec3 p, vec3 n, float turn, bool seen) {
   float slope = 1.0 - abs(dot(n, keyDirection));
   vec3 lifted = p + n * shadowTexel_m * (1.5 + 3.0 * slope);
   vec3 c = (shadowFromWorld * vec4(lifted, 1.0)).xyz;
   bool mapped = all(greaterThanEqual(c.xy, vec2(0.0))) && all(lessThanEqual(c.xy, vec2(1.0)));
   // Blockers can lie as far off as the penumbra of the highest of them reaches.
   float search = keyRadius * 0.3, blockers = 0.0, depths = 0.0;
-  int turns = mapped ? kBlockerTaps : 0;
+  int turns = seen && mapped ? kBlockerTaps : 0;
   for (int i = 0; i < turns; ++i) {
     float d = texture(shadowDepth, c.xy + disc(i, kBlockerTaps, turn) * search).r;
     if (d < c.z) { blockers += 1.0; depths += d; }
@@ -85,10 +86,10 @@ float keyLight(vec3 p, vec3 n, float turn) {
 }
 
 // Used on the side that turns away from the light only: see transmitted().
-float throughness(vec3 p, vec3 n, float turn) {
+float throughness(vec3 p, vec3 n, float turn, bool seen) {
   vec3 c = (shadowFromWorld * vec4(p - n * 2.0 * shadowTexel_m, 1.0)).xyz;
   float sum = 0.0;
-  int turns = dot(n, keyDirection) < 0.35 ? 6 : 0;
+  int turns = seen && dot(n, keyDirection) < 0.35 ? 6 : 0;
   for (int i = 0; i < turns; ++i) {
     vec2 at = c.xy + disc(i, 6, turn) * 0.35 * thicknessScale_m / shadowExtent_m;
     float thickness_m = max(c.z - texture(shadowDepth, at).r, 0.0) * shadowDepth_m;
@@ -99,11 +100,13 @@ float throughness(vec3 p, vec3 n, float turn) {
 
 void main() {
   vec4 g = texture(geometry, screen);
-  if (g.a <= 0.0) { result = vec4(1.0); return; }
+  bool seen = g.a > 0.0;
   float turn = 6.2831853 * interleavedNoise(floor(gl_FragCoord.xy));
   vec3 p_view = viewPosition(screen, g.a);
   vec3 p = (worldFromView * vec4(p_view, 1.0)).xyz, n = mat3(worldFromView) * g.xyz;
-  result = vec4(openness(p_view, g.xyz, turn), keyLight(p, n, turn), throughness(p, n, turn), 1.0);
+  vec4 found = vec4(openness(p_view, g.xyz, turn, seen), keyLight(p, n, turn, seen),
+                    throughness(p, n, turn, seen), 1.0);
+  result = seen ? found : vec4(1.0);
 }
 )";
 
@@ -120,12 +123,13 @@ vec3 viewPosition(vec2 at, float depth) {
 
 void main() {
   vec4 g = texture(geometry, screen);
-  if (g.a <= 0.0) { result = vec4(1.0); return; }
+  bool seen = g.a > 0.0;
   vec3 p = viewPosition(screen, g.a);
   float tolerance = 0.012 * g.a;
   vec4 sum = vec4(0.0);
   float weights = 0.0;
-  for (int i = -3; i <= 3; ++i) {
+  int reach = seen ? 3 : -4;  // nothing to do for the background
+  for (int i = -3; i <= reach; ++i) {
     vec2 at = screen + float(i) * step_uv;
     vec4 other = texture(geometry, at);
     float offPlane = abs(dot(viewPosition(at, other.a) - p, g.xyz)) / tolerance;
@@ -135,6 +139,7 @@ void main() {
     weights += w;
   }
   result = weights > 0.0 ? sum / weights : texture(source, screen);
+  if (!seen) result = vec4(1.0);
 }
 )";
 

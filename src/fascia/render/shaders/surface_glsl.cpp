@@ -5,7 +5,6 @@ namespace fascia::shaders {
 const char* const kSurface = R"(
 uniform sampler2D geometry, occlusion;
 uniform vec2 occlusionSize;    // pixels
-uniform vec2 targetSize;
 uniform mat4 viewFromWorld;
 uniform float unoccluded;      // 1: a see-through layer, which the occlusion pass did not see
 

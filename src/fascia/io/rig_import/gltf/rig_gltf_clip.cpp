@@ -155,18 +155,17 @@ double GltfClip::naturalRate_hz() const {
   return std::min(rate, kFastest);
 }
 
-std::vector<GltfClip> readGltfClips(const GltfDocument& document, const GltfScene& scene,
-                                    std::vector<std::string>& notes) {
-  const GltfPlace animations = document.root()["animations"];
-  std::vector<GltfClip> clips;
-  Skipped skipped;
-  ClipReader reader(document, scene, skipped);
-  for (std::size_t i = 0; i < animations.size(); ++i) {
-    GltfClip& clip = clips.emplace_back();
-    clip.name = animations.at(i)["name"].textOr("");
-    if (clip.name.empty()) clip.name = "animation " + std::to_string(i + 1);
-    reader.read(animations.at(i), clip);
-  }
+namespace {
+
+GltfClip clipAt(const GltfPlace& animations, std::size_t i, ClipReader& reader) {
+  GltfClip clip;
+  clip.name = animations.at(i)["name"].textOr("");
+  if (clip.name.empty()) clip.name = "animation " + std::to_string(i + 1);
+  reader.read(animations.at(i), clip);
+  return clip;
+}
+
+void noteSkipped(const Skipped& skipped, std::vector<std::string>& notes) {
   if (skipped.nowhere > 0) {
     notes.push_back(std::to_string(skipped.nowhere) +
                     " animation channels move nothing that is there: left out");
@@ -175,7 +174,30 @@ std::vector<GltfClip> readGltfClips(const GltfDocument& document, const GltfScen
     notes.push_back(std::to_string(skipped.unsound) +
                     " animation channels have keys that make no sense: left out");
   }
+}
+
+}  // namespace
+
+std::vector<GltfClip> readGltfClips(const GltfDocument& document, const GltfScene& scene,
+                                    std::vector<std::string>& notes) {
+  const GltfPlace animations = document.root()["animations"];
+  std::vector<GltfClip> clips;
+  Skipped skipped;
+  ClipReader reader(document, scene, skipped);
+  for (std::size_t i = 0; i < animations.size(); ++i) {
+    clips.push_back(clipAt(animations, i, reader));
+  }
+  noteSkipped(skipped, notes);
   return clips;
+}
+
+GltfClip readGltfClip(const GltfDocument& document, const GltfScene& scene, std::size_t animation,
+                      std::vector<std::string>& notes) {
+  Skipped skipped;
+  ClipReader reader(document, scene, skipped);
+  GltfClip clip = clipAt(document.root()["animations"], animation, reader);
+  noteSkipped(skipped, notes);
+  return clip;
 }
 
 }  // namespace fascia

@@ -35,5 +35,8 @@ struct GltfClip {
 // All animations. Channels that are no use (no such node, no numbers) are left out and noted.
 std::vector<GltfClip> readGltfClips(const GltfDocument& document, const GltfScene& scene,
                                     std::vector<std::string>& notes);
+// One of them: of many, each for itself would else decode all again.
+GltfClip readGltfClip(const GltfDocument& document, const GltfScene& scene, std::size_t animation,
+                      std::vector<std::string>& notes);
 
 }  // namespace fascia

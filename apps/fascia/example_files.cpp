@@ -1,6 +1,7 @@
-#include "bench/example_files.h"
+#include "example_files.h"
 
 #include <filesystem>
+#include <string_view>
 
 #include <fascia/base/error.h>
 
@@ -20,6 +21,20 @@ std::string findExamples() {
       if (folder == folder.parent_path()) break;
     }
   throw Error("the example characters were not found; name their folder with --examples");
+}
+
+std::function<std::string(const std::string&)> exampleFiles() {
+  return [](const std::string& path) -> std::string {
+    constexpr std::string_view kFolder = "examples/";
+    std::error_code unreadable;
+    if (!path.starts_with(kFolder) || fs::exists(path, unreadable)) return path;
+    try {
+      const std::string found = findExamples() + "/" + path.substr(kFolder.size());
+      return fs::exists(found, unreadable) ? found : path;
+    } catch (const Error&) {
+      return path;
+    }
+  };
 }
 
 }  // namespace fascia
