@@ -31,10 +31,6 @@ class FramePosture final : public PostureSource {
   const ClipSource& motion_;
 };
 
-bool hasRig(const Character& character) {
-  return character.def().rig && character.def().rig->model;
-}
-
 }  // namespace
 
 std::size_t closestFrame(std::span<const double> times_s, double frameRate_hz, double time_s) {
