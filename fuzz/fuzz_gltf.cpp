@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <fascia/io/rig_import/gltf/rig_gltf.h>
+#include <fascia/io/rig_import/gltf/rig_from_gltf.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

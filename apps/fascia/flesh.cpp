@@ -8,9 +8,8 @@
 #include <fascia/character/flesh_character.h>
 #include <fascia/io/documents/character_file.h>
 #include <fascia/io/file/file.h>
-#include <fascia/io/gltf/gltf_document.h>
+#include <fascia/io/rig_export/rig_copy.h>
 #include <fascia/io/rig_import/rig_import.h>
-#include <fascia/io/rig_import/rig_to_gltf.h>
 
 #include "commands.h"
 #include "console.h"
@@ -84,18 +83,6 @@ RigFile placeRig(const FleshOptions& options) {
   rig.def.file = nameOf(output) + ".rig.glb";
   rig.copy = (folder / rig.def.file).string();
   return rig;
-}
-
-// A glTF keeps everything that it holds. Of other formats what we understand is kept; `def.scale`
-// is in its points then.
-void copyRig(const RiggedModel& model, const FleshOptions& options, RigFile& rig) {
-  const std::string ending = endingOf(options.input);
-  if (ending == ".glb" || ending == ".gltf") {
-    GltfDocument::read(options.input).writeGlb(rig.copy);
-    return;
-  }
-  writeRigGlb(model, rig.copy);
-  rig.def.scale = 1;
 }
 
 void refuseToOverwrite(const std::string& path, bool force) {
@@ -173,7 +160,7 @@ void flesh(const FleshOptions& options, const Console& console) {
   const Json report = reportJson(model, fit);
   if (!options.report.empty()) writeFileWhole(options.report, printJson(report));
   if (!rig.copy.empty()) {
-    copyRig(model, options, rig);
+    rig.def.scale = copyRig(model, options.scale, rig.copy);
     console.say("wrote " + rig.copy);
   }
   made.def.name = nameOf(options.output);

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include <fascia/base/suggest.h>
-#include <fascia/io/cache.h>
-#include <fascia/io/file.h>
-#include <fascia/io/json.h>
+#include <fascia/io/cache/cache.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/json/json.h>
 
 #include "outputs.h"
 #include "shell_word.h"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include <fascia/io/rig_import/gltf/rig_gltf.h>
+#include <fascia/io/rig_import/gltf/rig_from_gltf.h>
 
 #include "gltf_sample.h"
 
@@ -99,5 +99,35 @@ inline double volume(const RiggedModel& m) {
   }
   return six / 6;
 }
+
+// Valve's text format: two bones along y, a bent frame, three triangles.
+inline constexpr const char* kSmd = R"(version 1
+nodes
+0 "hip" -1
+1 "knee" 0
+end
+skeleton
+time 0
+0 0 0 0 0 0 0
+1 0 1 0 0 0 0
+time 1
+0 0 0 0 0 0 0
+1 0 1 0 0.5 0 0
+end
+triangles
+cloth
+0 0 0 0 0 0 1 0 0 1 0 1
+0 1 0 0 0 0 1 1 0 1 0 1
+0 1 1 0 0 0 1 1 1 2 0 0.5 1 0.5
+cloth
+0 0 0 0 0 0 1 0 0 1 0 1
+0 1 1 0 0 0 1 1 1 2 0 0.5 1 0.5
+0 0 1 0 0 0 1 0 1 2 0 0.5 1 0.5
+cloth
+0 0 1 0 0 0 1 0 1 2 0 0.5 1 0.5
+0 1 1 0 0 0 1 1 1 2 0 0.5 1 0.5
+0 1 2 0 0 0 1 1 1 1 1 1
+end
+)";
 
 }  // namespace fascia::sample

@@ -146,7 +146,7 @@ TEST(RigMotion, LongMotionsAreKeptCoarser) {
   EXPECT_LT(m.motions[0].rate_hz, 26);  // 5 million over 2000 nodes over 100 seconds
   EXPECT_NEAR(m.motions[0].duration_s(), 100, 1e-3);
   EXPECT_THAT(m.notes, Contains(HasSubstr("the motions are long")));
-  EXPECT_THAT(m.notes, Contains(HasSubstr("\"eternity\" is too long")));
+  EXPECT_THAT(m.notes, Contains(HasSubstr("'eternity' is too long")));
 }
 
 }  // namespace

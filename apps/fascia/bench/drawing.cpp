@@ -13,9 +13,9 @@
 #include <fascia/render/renderer.h>
 
 #include "bench/benches.h"
-#include "bench/example_files.h"
 #include "bench/machine.h"
 #include "console.h"
+#include "example_files.h"
 #include "film.h"
 #include "interrupt.h"
 

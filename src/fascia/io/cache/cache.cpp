@@ -2,11 +2,12 @@
 
 #include <cmath>
 #include <functional>
+#include <span>
 
-#include <fascia/io/cache/rig_stream.h>
 #include <fascia/io/documents/character_file.h>
 #include <fascia/io/file/byte_stream.h>
 #include <fascia/io/file/file.h>
+#include <fascia/io/rig_model/rig_stream.h>
 
 namespace fascia {
 namespace {
@@ -55,6 +56,13 @@ TriangleMesh readMesh(ByteReader& in) {
   checkFinite(in, mesh.normals);
   checkFinite(in, mesh.uvs);
   return mesh;
+}
+
+// Of a rig's motions only the recorded one is kept.
+std::span<const SampledMotion> motionNamed(const RiggedModel& model, const std::string& name) {
+  for (const SampledMotion& motion : model.motions)
+    if (motion.name == name) return {&motion, 1};
+  return {};
 }
 
 template <class Stats, class Visit>
@@ -114,7 +122,7 @@ void putCache(const CharacterDef& def, const Recording& recording, const Texture
   head.text(characterText(def));
   head.text(texture ? texture->bytes : loadTexture(def).bytes);
   head.text(recording.motion);
-  if (def.rig) writeRig(*def.rig->model, recording.motion, head);
+  if (def.rig) writeRig(*def.rig->model, motionNamed(*def.rig->model, recording.motion), head);
   if (shapes > 0) head.value(static_cast<std::uint64_t>(shapes));
   head.value(recording.frame_rate_hz);
   head.value(static_cast<std::uint8_t>(recording.loop));

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include <fascia/character/character.h>
-#include <fascia/io/json/json.h>
+#include <fascia/io/json/line_index.h>
 
 namespace fascia {
 

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include <fascia/io/documents/codec.h>
+#include <fascia/io/json/line_tree.h>
 
 namespace fascia {
 
@@ -29,7 +30,8 @@ T readDocument(std::string_view text, std::string_view kind, const Codec<T>& cod
   codec.read(body, {}, reading, def);
   for (Issue& issue : reading.issues) issue.where.file = file;
   if (!reading.issues.empty()) throw Error(std::move(reading.issues));
-  lines = LineIndex(std::move(body), file);
+  lines =
+      LineIndex(std::make_shared<const LineIndex::Tree>(LineIndex::Tree{std::move(body)}), file);
   return def;
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include <fascia/io/json/json.h>
+#include <fascia/io/json/line_index.h>
 #include <fascia/world/stage.h>
 
 namespace fascia {

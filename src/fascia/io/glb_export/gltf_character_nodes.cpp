@@ -43,23 +43,24 @@ Transform localFrame(const Skeleton& skeleton, const PosedSkeleton& posed, std::
   return parent.valid() ? posed.joint_world[parent.index()].inverse() * world : world;
 }
 
-GltfCharacterNodes::GltfCharacterNodes(const Character& character, GlbBuilder& glb)
+GltfCharacterNodes::GltfCharacterNodes(const Character& character, GltfBuilder& glb)
     : character_(character),
       glb_(glb),
       roundness_m_(kRoundness * std::max(largestRadius_m(character.flesh()),
                                          largestRadius_m(character.ornaments()))) {}
 
-void GltfCharacterNodes::addJoints(std::vector<GltfJson> nodes) {
+void GltfCharacterNodes::addJoints(std::vector<Json> nodes) {
   for (std::size_t j = 0; j < nodes.size(); ++j) {
     const JointId id(static_cast<std::int64_t>(j));
     joints_.push_back(add(std::move(nodes[j]), character_.skeleton().parent(id)));
   }
 }
 
-std::size_t GltfCharacterNodes::add(GltfJson node, JointId parent) {
-  const std::size_t index = glb_.add("nodes", std::move(node));
+int GltfCharacterNodes::add(Json node, JointId parent) {
+  const int index = glb_.add("nodes", std::move(node));
   if (parent.valid()) {
-    glb_.root["nodes"][joints_[parent.index()]]["children"].push_back(index);
+    Json& above = glb_.document.item("nodes", joints_[parent.index()]);
+    ensureList(above, "children").list().push_back(index);
   } else {
     roots_.push_back(index);
   }
@@ -70,21 +71,22 @@ void GltfCharacterNodes::addSolids(const Flesh& flesh, int detail) {
   for (std::size_t s = 0; s < flesh.solidCount(); ++s) {
     const SolidId id(static_cast<std::int64_t>(s));
     const FleshSolidDef& def = flesh.def(id);
-    GltfJson primitive = geometryOf(flesh.restSolid(id), detail);
-    primitive["material"] = materialOf(def.color);
-    const std::size_t mesh = glb_.add(
-        "meshes", {{"name", def.name}, {"primitives", GltfJson::array({std::move(primitive)})}});
+    Json primitive = geometryOf(flesh.restSolid(id), detail);
+    putMember(primitive, "material", materialOf(def.color));
+    const int mesh = glb_.add(
+        "meshes",
+        Json::Object{{"name", def.name}, {"primitives", Json::List{std::move(primitive)}}});
     const Vec3& t = def.position_m;
     const Eigen::Vector4f r = gltfQuaternion(rotationZyx(def.orientation_rad));
-    add({{"name", def.name},
-         {"mesh", mesh},
-         {"translation", {t.x(), t.y(), t.z()}},
-         {"rotation", {r.x(), r.y(), r.z(), r.w()}}},
+    add(Json::Object{{"name", def.name},
+                     {"mesh", mesh},
+                     {"translation", numberList(t)},
+                     {"rotation", numberList(r)}},
         flesh.joint(id));
   }
 }
 
-GltfJson GltfCharacterNodes::geometryOf(const Solid& solid, int detail) {
+Json GltfCharacterNodes::geometryOf(const Solid& solid, int detail) {
   TriangleMesh mesh = solid.tessellate(detailFor(solid, roundness_m_, detail));
   for (const auto& [known, primitive] : geometries_) {
     if (known.positions == mesh.positions && known.triangles == mesh.triangles) return primitive;
@@ -96,16 +98,13 @@ GltfJson GltfCharacterNodes::geometryOf(const Solid& solid, int detail) {
 }
 
 // One material per colour.
-std::size_t GltfCharacterNodes::materialOf(const Color& color) {
-  const GltfJson linear = linearColor(color.r, color.g, color.b);
+int GltfCharacterNodes::materialOf(const Color& color) {
+  const std::array<float, 3> wanted{color.r, color.g, color.b};
   for (const auto& [known, index] : materials_) {
-    if (known == linear) return index;
+    if (known == wanted) return index;
   }
-  const GltfJson surface = {
-      {"baseColorFactor", linear}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.4}};
-  const std::size_t index = glb_.add("materials", {{"pbrMetallicRoughness", surface}});
-  materials_.emplace_back(linear, index);
-  return index;
+  materials_.emplace_back(wanted, addMaterial(color, 0.4, glb_));
+  return materials_.back().second;
 }
 
 }  // namespace fascia

@@ -24,7 +24,7 @@ std::array<std::uint16_t, PointWeights::kMost> rounded(const PointWeights& weigh
   return out;
 }
 
-void addWeights(const GridSkinMesh& skin, GltfJson& attributes, GlbBuilder& glb) {
+void addWeights(const GridSkinMesh& skin, Json& attributes, GltfBuilder& glb) {
   std::array<std::vector<std::uint16_t>, 2> joints, shares;
   bool more = false;
   for (const std::uint32_t point : skin.rig.pointOf) {
@@ -37,12 +37,13 @@ void addWeights(const GridSkinMesh& skin, GltfJson& attributes, GlbBuilder& glb)
     }
   }
   for (std::size_t set = 0; set < (more ? 2u : 1u); ++set) {
-    attributes["JOINTS_" + std::to_string(set)] = glb.addJoints(joints[set]);
-    attributes["WEIGHTS_" + std::to_string(set)] = glb.addWeights(shares[set]);
+    const std::string number = std::to_string(set);
+    attributes.set("JOINTS_" + number, glb.document.addJoints(joints[set]));
+    attributes.set("WEIGHTS_" + number, glb.document.addShorts(shares[set], "VEC4", true));
   }
 }
 
-GltfJson targetOf(const GridSkinMesh& skin, std::size_t target, GlbBuilder& glb) {
+Json targetOf(const GridSkinMesh& skin, std::size_t target, GltfBuilder& glb) {
   const MorphBasis::Target& source = skin.basis.targets[target];
   std::vector<Eigen::Vector3f> points(skin.rig.points_m.size(), Eigen::Vector3f::Zero());
   for (std::size_t k = 0; k < source.points.size(); ++k)
@@ -52,29 +53,22 @@ GltfJson targetOf(const GridSkinMesh& skin, std::size_t target, GlbBuilder& glb)
     moved.push_back(points[point]);
     turned.push_back(skin.turns[target][point]);
   }
-  return {{"POSITION", glb.addSparseVectors(moved, true)},
-          {"NORMAL", glb.addSparseVectors(turned, false)}};
+  const int positions = glb.addSparseVectors(moved, true);
+  return morphTarget(positions, glb.addSparseVectors(turned, false));
 }
 
 }  // namespace
 
-std::size_t addGridSkin(const GridSkinMesh& skin, std::size_t material, GlbBuilder& glb) {
-  GltfJson primitive = addPrimitive(skin.rig.surface, material, glb);
-  addWeights(skin, primitive["attributes"], glb);
-  GltfJson mesh = {{"name", "skin"}};
-  if (const std::size_t count = skin.basis.targets.size(); count > 0) {
-    GltfJson targets = GltfJson::array(), names = GltfJson::array();
-    for (std::size_t k = 0; k < count; ++k) {
-      targets.push_back(targetOf(skin, k, glb));
-      names.push_back(std::string(k < 9 ? "fascia_morph_0" : "fascia_morph_") +
-                      std::to_string(k + 1));
-    }
-    primitive["targets"] = std::move(targets);
-    mesh["weights"] = std::vector<float>(count, 0.0f);
-    mesh["extras"] = {{"targetNames", std::move(names)}};
+int addGridSkin(const GridSkinMesh& skin, int material, GltfBuilder& glb) {
+  Json primitive = addPrimitive(skin.rig.surface, material, glb);
+  addWeights(skin, ensureMember(primitive, "attributes"), glb);
+  MorphTargets targets;
+  for (std::size_t k = 0; k < skin.basis.targets.size(); ++k) {
+    const std::string name =
+        std::string(k < 9 ? "fascia_morph_0" : "fascia_morph_") + std::to_string(k + 1);
+    targets.add(targetOf(skin, k, glb), name);
   }
-  mesh["primitives"] = GltfJson::array({std::move(primitive)});
-  return glb.add("meshes", std::move(mesh));
+  return addMesh("skin", std::move(primitive), std::move(targets), glb);
 }
 
 }  // namespace fascia

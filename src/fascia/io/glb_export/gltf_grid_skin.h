@@ -5,7 +5,7 @@
 
 #include <fascia/baking/morph_basis.h>
 #include <fascia/io/glb_export/grid_rig.h>
-#include <fascia/io/gltf/glb_builder.h>
+#include <fascia/io/gltf/gltf_builder.h>
 
 namespace fascia {
 
@@ -18,6 +18,6 @@ struct GridSkinMesh {
 };
 
 // Adds it; returns the mesh.
-std::size_t addGridSkin(const GridSkinMesh& skin, std::size_t material, GlbBuilder& glb);
+int addGridSkin(const GridSkinMesh& skin, int material, GltfBuilder& glb);
 
 }  // namespace fascia

@@ -4,6 +4,7 @@
 
 #include <fascia/geometry/welded_normals.h>
 #include <fascia/io/glb_export/keep_frames.h>
+#include <fascia/io/gltf/gltf_animation.h>
 
 namespace fascia {
 namespace {
@@ -13,6 +14,11 @@ using Positions = std::vector<Eigen::Vector3f>;
 // IEC 61966-2-1.
 double linearFromSrgb(double c) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+// As glTF wants it: linear, with alpha.
+Json linearColor(float r, float g, float b) {
+  return Json::List{linearFromSrgb(r), linearFromSrgb(g), linearFromSrgb(b), 1.0};
 }
 
 std::vector<std::size_t> keepSkinFrames(const Recording& recording, double tolerance_m) {
@@ -45,75 +51,86 @@ Positions difference(const Positions& value, const Positions& base, double unsee
 
 }  // namespace
 
-void GltfAnimation::add(std::size_t times, std::size_t values, std::size_t node, const char* path) {
-  samplers.push_back({{"input", times}, {"output", values}, {"interpolation", "LINEAR"}});
-  channels.push_back(
-      {{"sampler", samplers.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+void MorphTargets::add(Json target, const std::string& name, float weight) {
+  targets.push_back(std::move(target));
+  names.emplace_back(name);
+  weights.push_back(weight);
 }
 
-std::size_t addSkinMaterial(const SkinDef& def, const Texture& texture, GlbBuilder& glb) {
-  GltfJson surface = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}};
-  if (texture.empty()) {
-    surface["baseColorFactor"] = linearColor(def.color[0], def.color[1], def.color[2]);
-  } else {
-    const std::size_t image = glb.addImage(texture.bytes, texture.mimeType());
-    const std::size_t sampler = glb.add("samplers", {{"magFilter", 9729}, {"minFilter", 9987}});
-    const std::size_t index = glb.add("textures", {{"sampler", sampler}, {"source", image}});
-    surface["baseColorTexture"] = {{"index", index}};
+Json morphTarget(int positions, int normals) {
+  return Json::Object{{"POSITION", positions}, {"NORMAL", normals}};
+}
+
+int addMesh(const std::string& name, Json primitive, MorphTargets targets, GltfBuilder& glb) {
+  Json mesh = Json::Object{{"name", name}};
+  if (!targets.targets.empty()) {
+    primitive.set("targets", std::move(targets.targets));
+    mesh.set("weights", numberList(targets.weights));
+    mesh.set("extras", Json::Object{{"targetNames", std::move(targets.names)}});
   }
-  return glb.add("materials", {{"name", "skin"}, {"pbrMetallicRoughness", surface}});
+  mesh.set("primitives", Json::List{std::move(primitive)});
+  return glb.add("meshes", std::move(mesh));
 }
 
-GlbBuilder::Json linearColor(float r, float g, float b) {
-  return {linearFromSrgb(r), linearFromSrgb(g), linearFromSrgb(b), 1.0};
+int addSkinMaterial(const SkinDef& def, const Texture& texture, GltfBuilder& glb) {
+  Json surface = Json::Object{{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}};
+  if (texture.empty()) {
+    surface.set("baseColorFactor", linearColor(def.color[0], def.color[1], def.color[2]));
+  } else {
+    const int image = glb.document.addImage(
+        {reinterpret_cast<const std::uint8_t*>(texture.bytes.data()), texture.bytes.size()});
+    const int sampler = glb.add("samplers", Json::Object{{"magFilter", 9729}, {"minFilter", 9987}});
+    const int index = glb.add("textures", Json::Object{{"sampler", sampler}, {"source", image}});
+    surface.set("baseColorTexture", Json::Object{{"index", index}});
+  }
+  return glb.add("materials",
+                 Json::Object{{"name", "skin"}, {"pbrMetallicRoughness", std::move(surface)}});
 }
 
-GlbBuilder::Json addPrimitive(const TriangleMesh& mesh, std::size_t material, GlbBuilder& glb) {
-  const auto vertices = GlbBuilder::Target::vertices;
-  GltfJson attributes = {{"POSITION", glb.addVectors(mesh.positions, true, vertices)},
-                         {"NORMAL", glb.addVectors(mesh.normals, false, vertices)}};
-  if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = glb.addUvs(mesh.uvs);
-  GltfJson primitive = {{"attributes", std::move(attributes)}};
-  primitive["indices"] = glb.addIndices({mesh.triangles.data()->data(), 3 * mesh.triangles.size()},
-                                        mesh.positions.size());
-  primitive["material"] = material;
-  return primitive;
+int addMaterial(const Color& color, double roughness, GltfBuilder& glb) {
+  Json surface = Json::Object{{"baseColorFactor", linearColor(color.r, color.g, color.b)},
+                              {"metallicFactor", 0.0},
+                              {"roughnessFactor", roughness}};
+  return glb.add("materials", Json::Object{{"pbrMetallicRoughness", std::move(surface)}});
 }
 
-std::size_t addSkinMesh(const SkinDef& def, const Recording& recording, const Texture& texture,
-                        double tolerance_m, GlbBuilder& glb, std::vector<std::size_t>& kept) {
+Json addPrimitive(const TriangleMesh& mesh, int material, GltfBuilder& glb) {
+  const auto vertices = GltfBuilder::Target::vertices;
+  Json attributes = Json::Object{{"POSITION", glb.addVectors(mesh.positions, true, vertices)},
+                                 {"NORMAL", glb.addVectors(mesh.normals, false, vertices)}};
+  if (!mesh.uvs.empty()) attributes.set("TEXCOORD_0", glb.addUvs(mesh.uvs));
+  const int indices = glb.addIndices({mesh.triangles.data()->data(), 3 * mesh.triangles.size()});
+  return Json::Object{
+      {"attributes", std::move(attributes)}, {"indices", indices}, {"material", material}};
+}
+
+int addSkinMesh(const SkinDef& def, const Recording& recording, const Texture& texture,
+                double tolerance_m, GltfBuilder& glb, std::vector<std::size_t>& kept) {
   kept = keepSkinFrames(recording, tolerance_m);
   TriangleMesh mesh = recording.skin;
   mesh.positions = recording.frames[kept.front()].skin_m;
   const WeldedNormals welded(mesh);
   welded.compute(mesh.positions, mesh.normals);
 
-  GltfJson primitive = addPrimitive(mesh, addSkinMaterial(def, texture, glb), glb);
+  Json primitive = addPrimitive(mesh, addSkinMaterial(def, texture, glb), glb);
 
   const double unseenNormal = tolerance_m > 0 ? 0.004 : 0;  // a quarter of a degree
-  GltfJson targets = GltfJson::array(), names = GltfJson::array();
+  MorphTargets targets;
   Positions normals;
   for (std::size_t k = 1; k < kept.size(); ++k) {
     const Positions& frame = recording.frames[kept[k]].skin_m;
     welded.compute(frame, normals);
     const Positions moved = difference(frame, mesh.positions, tolerance_m / 4);
     const Positions turned = difference(normals, mesh.normals, unseenNormal);
-    targets.push_back({{"POSITION", glb.addSparseVectors(moved, true)},
-                       {"NORMAL", glb.addSparseVectors(turned, false)}});
-    names.push_back("frame " + std::to_string(kept[k]));
+    const int positions = glb.addSparseVectors(moved, true);
+    targets.add(morphTarget(positions, glb.addSparseVectors(turned, false)),
+                "frame " + std::to_string(kept[k]));
   }
-  GltfJson out = {{"name", "skin"}};
-  if (!targets.empty()) {
-    primitive["targets"] = targets;
-    out["weights"] = std::vector<float>(targets.size(), 0.0f);
-    out["extras"] = {{"targetNames", names}};
-  }
-  out["primitives"] = GltfJson::array({primitive});
-  return glb.add("meshes", std::move(out));
+  return addMesh("skin", std::move(primitive), std::move(targets), glb);
 }
 
-void addSkinAnimation(const Recording& recording, const std::vector<std::size_t>& kept,
-                      std::size_t node, GlbBuilder& glb, GltfAnimation& animation) {
+void addSkinAnimation(const Recording& recording, const std::vector<std::size_t>& kept, int node,
+                      GltfBuilder& glb, Json& animation) {
   if (kept.size() < 2) return;
   const std::size_t targets = kept.size() - 1;
   std::vector<float> times, weights(kept.size() * targets, 0.0f);
@@ -122,7 +139,8 @@ void addSkinAnimation(const Recording& recording, const std::vector<std::size_t>
         static_cast<float>(recording.frames[kept[k]].time_s - recording.frames.front().time_s));
     if (k > 0) weights[k * targets + k - 1] = 1;
   }
-  animation.add(glb.addScalars(times, true), glb.addScalars(weights, false), node, "weights");
+  const int input = glb.addScalars(times, true);
+  addGltfTrack(animation, input, glb.addScalars(weights, false), node, "weights");
 }
 
 }  // namespace fascia

@@ -1,6 +1,7 @@
 #include <fascia/io/glb_export/gltf_tracks.h>
 
 #include <fascia/io/glb_export/keep_frames.h>
+#include <fascia/io/gltf/gltf_animation.h>
 
 namespace fascia {
 namespace {
@@ -9,8 +10,8 @@ namespace {
 // A track that does not move is one key, or none where the node is there already.
 template <class Value, class AddValues>
 void addTrack(const std::vector<float>& times, const std::vector<Value>& values, float tolerance,
-              bool needed, std::size_t node, const char* path, GlbBuilder& glb,
-              GltfAnimation& animation, const AddValues& addValues) {
+              bool needed, int node, const char* path, GltfBuilder& glb, Json& animation,
+              const AddValues& addValues) {
   const std::vector<std::size_t> kept =
       keepFrames(values.size(), [&](std::size_t a, std::size_t b) {
         for (std::size_t f = a + 1; f < b; ++f) {
@@ -31,8 +32,8 @@ void addTrack(const std::vector<float>& times, const std::vector<Value>& values,
   }
   if (!moves && !needed) return;
   if (!moves) keptTimes.resize(1), keptValues.resize(1);
-  const std::size_t input = glb.addTimes(keptTimes);
-  animation.add(input, addValues(keptValues), node, path);
+  const int input = glb.addTimes(keptTimes);
+  addGltfTrack(animation, input, addValues(keptValues), node, path);
 }
 
 }  // namespace
@@ -48,19 +49,17 @@ void PlaceTrack::add(const Transform& place) {
   translations.push_back(place.translation_m.cast<float>());
 }
 
-GlbBuilder::Json placeNode(const std::string& name, const PlaceTrack& track) {
-  const Eigen::Vector3f& t = track.translations.front();
-  const Eigen::Vector4f& r = track.rotations.front();
-  return {{"name", name},
-          {"translation", {t.x(), t.y(), t.z()}},
-          {"rotation", {r.x(), r.y(), r.z(), r.w()}}};
+Json placeNode(const std::string& name, const PlaceTrack& track) {
+  return Json::Object{{"name", name},
+                      {"translation", numberList(track.translations.front())},
+                      {"rotation", numberList(track.rotations.front())}};
 }
 
-void addTracks(const std::vector<float>& times, const PlaceTrack& track, std::size_t node,
-               GlbBuilder& glb, GltfAnimation& animation, const TrackOptions& options) {
+void addTracks(const std::vector<float>& times, const PlaceTrack& track, int node, GltfBuilder& glb,
+               Json& animation, const TrackOptions& options) {
   addTrack(times, track.translations, options.metres, options.translations, node, "translation",
            glb, animation, [&](const auto& values) {
-             return glb.addVectors(values, false, GlbBuilder::Target::none);
+             return glb.addVectors(values, false, GltfBuilder::Target::none);
            });
   addTrack(times, track.rotations, options.halfRadians, options.rotations, node, "rotation", glb,
            animation, [&](const auto& values) {

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include <fascia/io/glb_export/gltf_skin.h>
+#include <fascia/io/gltf/gltf_builder.h>
+#include <fascia/math/types.h>
 
 namespace fascia {
 
@@ -18,7 +19,7 @@ struct PlaceTrack {
 };
 
 // A node that stands where the track starts.
-GlbBuilder::Json placeNode(const std::string& name, const PlaceTrack& track);
+Json placeNode(const std::string& name, const PlaceTrack& track);
 struct TrackOptions {
   // What a frame may differ from the blend of its neighbours to be dropped. Where skins are morphs
   // of their own, their joints' nodes need no more than what can be seen.
@@ -28,7 +29,7 @@ struct TrackOptions {
   bool small = false;  // rotations in 16 bits
 };
 // Animates it; drops frames that lie between their neighbours.
-void addTracks(const std::vector<float>& times, const PlaceTrack& track, std::size_t node,
-               GlbBuilder& glb, GltfAnimation& animation, const TrackOptions& options = {});
+void addTracks(const std::vector<float>& times, const PlaceTrack& track, int node, GltfBuilder& glb,
+               Json& animation, const TrackOptions& options = {});
 
 }  // namespace fascia

@@ -3,9 +3,11 @@
 #include <cmath>
 
 #include <fascia/io/file/file.h>
+#include <fascia/io/glb_export/character_gltf.h>
 #include <fascia/io/glb_export/gltf_character_nodes.h>
 #include <fascia/io/glb_export/gltf_skin.h>
 #include <fascia/io/glb_export/gltf_tracks.h>
+#include <fascia/io/gltf/gltf_animation.h>
 
 namespace fascia {
 namespace {
@@ -25,7 +27,7 @@ std::vector<PlaceTrack> jointTracks(const Skeleton& skeleton, const Recording& r
 class CharacterWriter {
  public:
   CharacterWriter(const Character& character, const Recording& recording, const GlbOptions& options,
-                  GlbBuilder& glb, GltfAnimation& animation)
+                  GltfBuilder& glb, Json& animation)
       : character_(character),
         recording_(recording),
         options_(options),
@@ -33,7 +35,7 @@ class CharacterWriter {
         animation_(animation),
         nodes_(character, glb) {}
 
-  GlbCharacter add() {
+  GltfCharacter add() {
     check();
     addJoints();
     if (options_.ornaments) nodes_.addSolids(character_.ornaments(), options_.solidDetail);
@@ -71,7 +73,7 @@ class CharacterWriter {
       times.push_back(static_cast<float>(frame.time_s - recording_.frames.front().time_s));
     }
     const std::vector<PlaceTrack> tracks = jointTracks(skeleton, recording_);
-    std::vector<GltfJson> nodes;
+    std::vector<Json> nodes;
     for (std::size_t j = 0; j < tracks.size(); ++j) {
       const JointId id(static_cast<std::int64_t>(j));
       nodes.push_back(placeNode(skeleton.joint(id).name, tracks[j]));
@@ -84,50 +86,49 @@ class CharacterWriter {
   void addSkin() {
     if (!hasSkin()) return;
     const Texture texture = options_.texture ? *options_.texture : loadTexture(character_.def());
-    const std::size_t mesh =
+    const int mesh =
         addSkinMesh(*character_.def().skin, recording_, texture, options_.tolerance_m, glb_, kept_);
-    const std::size_t node = nodes_.add({{"name", "skin"}, {"mesh", mesh}}, JointId());
+    const int node = nodes_.add(Json::Object{{"name", "skin"}, {"mesh", mesh}}, JointId());
     addSkinAnimation(recording_, kept_, node, glb_, animation_);
   }
 
   const Character& character_;
   const Recording& recording_;
   const GlbOptions& options_;
-  GlbBuilder& glb_;
-  GltfAnimation& animation_;
+  GltfBuilder& glb_;
+  Json& animation_;
   GltfCharacterNodes nodes_;
   std::vector<std::size_t> kept_;
 };
 
 }  // namespace
 
-GlbCharacter addCharacter(const Character& character, const Recording& recording,
-                          const GlbOptions& options, GlbBuilder& glb, GltfAnimation& animation) {
+GltfCharacter addCharacter(const Character& character, const Recording& recording,
+                           const GlbOptions& options, GltfBuilder& glb, Json& animation) {
   return CharacterWriter(character, recording, options, glb, animation).add();
 }
 
-std::string finishGlb(const std::string& name, const std::vector<std::size_t>& roots,
-                      std::vector<NamedAnimation> animations, GlbBuilder& glb) {
-  GltfJson scene = {{"nodes", roots}};
-  if (!name.empty()) scene["name"] = name;
-  glb.add("scenes", std::move(scene));
-  glb.root["scene"] = 0;
-  for (NamedAnimation& a : animations) {
-    if (a.animation.channels.empty()) continue;
-    glb.add("animations", {{"name", a.name.empty() ? "rest" : a.name},
-                           {"samplers", std::move(a.animation.samplers)},
-                           {"channels", std::move(a.animation.channels)}});
-  }
-  return glb.finish();
+Json emptyAnimation(const std::string& motion) {
+  return Json::Object{{"name", motion.empty() ? "rest" : motion}};
+}
+
+std::string finishGlb(const std::string& name, const std::vector<int>& roots,
+                      std::vector<Json> animations, GltfBuilder& glb) {
+  Json scene = Json::Object{{"nodes", numberList(roots)}};
+  if (!name.empty()) scene.set("name", name);
+  putMember(glb.document.json(), "scene", glb.add("scenes", std::move(scene)));
+  for (Json& animation : animations)
+    if (hasGltfTracks(animation)) glb.add("animations", std::move(animation));
+  return glb.document.glb();
 }
 
 GlbReport writeGlb(const Character& character, const Recording& recording, const std::string& path,
                    const GlbOptions& options) {
-  GlbBuilder glb;
-  GltfAnimation animation;
-  const GlbCharacter added = addCharacter(character, recording, options, glb, animation);
+  GltfBuilder glb(path);
+  Json animation = emptyAnimation(recording.motion);
+  const GltfCharacter added = addCharacter(character, recording, options, glb, animation);
   const std::string bytes =
-      finishGlb(character.def().name, added.roots, {{recording.motion, std::move(animation)}}, glb);
+      finishGlb(character.def().name, added.roots, {std::move(animation)}, glb);
   writeFileWhole(path, bytes);
   return {added.framesKept, bytes.size()};
 }

@@ -1,11 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
-#include <vector>
-
 #include <fascia/character/recording.h>
-#include <fascia/io/glb_export/gltf_skin.h>
 #include <fascia/io/picture/texture.h>
 
 namespace fascia {
@@ -24,21 +22,6 @@ struct GlbReport {
   std::size_t framesKept = 0;  // of recording.frames
   std::size_t bytes = 0;
 };
-
-// The parts, for documents that hold more than one character: its nodes, and the frames kept.
-struct GlbCharacter {
-  std::vector<std::size_t> roots;
-  std::size_t framesKept = 0;
-};
-GlbCharacter addCharacter(const Character& character, const Recording& recording,
-                          const GlbOptions& options, GlbBuilder& glb, GltfAnimation& animation);
-struct NamedAnimation {
-  std::string name;  // empty: the rest posture
-  GltfAnimation animation;
-};
-// The whole file with one scene of these root nodes, and those animations that have channels.
-std::string finishGlb(const std::string& name, const std::vector<std::size_t>& roots,
-                      std::vector<NamedAnimation> animations, GlbBuilder& glb);
 
 // Binary glTF 2.0 (Khronos): the skin with uvs, normals and a baked animation by morph targets (one
 // per kept frame, sparse, blended linearly), the skeleton as animated nodes, the ornaments on their

@@ -5,11 +5,14 @@
 
 #include <fascia/baking/morph_normals.h>
 #include <fascia/io/file/file.h>
+#include <fascia/io/glb_export/character_gltf.h>
 #include <fascia/io/glb_export/gltf_character_nodes.h>
 #include <fascia/io/glb_export/gltf_grid_skin.h>
+#include <fascia/io/glb_export/gltf_skin.h>
 #include <fascia/io/glb_export/gltf_tracks.h>
 #include <fascia/io/glb_export/grid_rig.h>
-#include <fascia/io/rig_export/rig_writer_player.h>
+#include <fascia/io/gltf/gltf_animation.h>
+#include <fascia/io/rig_export/rig_player.h>
 
 namespace fascia {
 namespace {
@@ -30,14 +33,15 @@ struct BoneTrack {
 class GridWriter {
  public:
   GridWriter(const Character& character, std::span<const Recording* const> recordings,
-             const GridBakeOptions& options)
+             const GridBakeOptions& options, const std::string& path)
       : character_(character),
         recordings_(recordings),
         options_(options),
         rig_(gridRigOf(character)),
         frames_(gridFramesOf(character, rig_, recordings)),
-        nodes_(character, glb_),
-        animations_(recordings.size()) {
+        glb_(path),
+        nodes_(character, glb_) {
+    for (const Recording* r : recordings) animations_.push_back(emptyAnimation(r->motion));
     Box box;
     for (const Eigen::Vector3f& p : rig_.points_m) box.add(p.cast<double>());
     size_m_ = box.size().norm();
@@ -50,13 +54,10 @@ class GridWriter {
     nodes_.addSolids(character_.ornaments(), kSolidDetail);
     addHelpers();
     addSkin();
-    std::vector<NamedAnimation> named;
     int next = 0;
-    for (std::size_t r = 0; r < recordings_.size(); ++r) {
-      animationOf_.push_back(animations_[r].channels.empty() ? -1 : next++);
-      named.push_back({recordings_[r]->motion, std::move(animations_[r])});
-    }
-    return finishGlb(character_.def().name, nodes_.roots(), std::move(named), glb_);
+    for (const Json& animation : animations_)
+      animationOf_.push_back(hasGltfTracks(animation) ? next++ : -1);
+    return finishGlb(character_.def().name, nodes_.roots(), std::move(animations_), glb_);
   }
 
   std::size_t added() const {
@@ -66,7 +67,7 @@ class GridWriter {
   std::vector<BakeError> errors(const std::string& path) const {
     const GltfDocument document = GltfDocument::read(path);
     RigPart part;
-    part.node = static_cast<int>(skinNode_), part.primitive = 0;
+    part.node = skinNode_, part.primitive = 0;
     std::vector<BakeError> out;
     for (std::size_t r = 0; r < recordings_.size(); ++r) {
       const RigPlayer player(document, {&part, 1}, animationOf_[r], 1, basis_.targets.size());
@@ -91,7 +92,7 @@ class GridWriter {
   void addJoints() {
     const Skeleton& skeleton = character_.skeleton();
     std::vector<BoneTrack> tracks;
-    std::vector<GltfJson> nodes;
+    std::vector<Json> nodes;
     for (std::size_t j = 0; j < skeleton.jointCount(); ++j) {
       const JointId id(static_cast<std::int64_t>(j)), parent = skeleton.parent(id);
       BoneTrack& track = tracks.emplace_back();
@@ -106,7 +107,7 @@ class GridWriter {
     for (std::size_t j = 0; j < tracks.size(); ++j) animate(bones_[j], tracks[j]);
   }
 
-  static GltfJson nodeOf(const std::string& name, const Transform& place) {
+  static Json nodeOf(const std::string& name, const Transform& place) {
     PlaceTrack track;
     track.add(place);
     return placeNode(name, track);
@@ -142,7 +143,7 @@ class GridWriter {
 
   // A track in every animation, if the node moves in any of them: where players keep the pose of
   // the one before, it would stay there.
-  void animate(std::size_t node, const BoneTrack& track) {
+  void animate(int node, const BoneTrack& track) {
     TrackOptions keys;
     keys.metres = static_cast<float>(kKeyError * size_m_);
     keys.halfRadians = static_cast<float>(kKeyError);
@@ -185,12 +186,13 @@ class GridWriter {
       skin.turns = fitMorphNormals(normals, rig_.triangles, skinning_.weights, frames_.bones,
                                    frames_.points, basis_);
     }
-    const std::size_t mesh =
+    const int mesh =
         addGridSkin(skin, addSkinMaterial(*character_.def().skin, texture, glb_), glb_);
-    const std::size_t matrices = glb_.addMatrices(inverseBind_);
-    const std::size_t bind =
-        glb_.add("skins", {{"joints", bones_}, {"inverseBindMatrices", matrices}});
-    skinNode_ = nodes_.add({{"name", "skin"}, {"mesh", mesh}, {"skin", bind}}, JointId());
+    const int matrices = glb_.addMatrices(inverseBind_);
+    const int bind = glb_.add(
+        "skins", Json::Object{{"joints", numberList(bones_)}, {"inverseBindMatrices", matrices}});
+    skinNode_ =
+        nodes_.add(Json::Object{{"name", "skin"}, {"mesh", mesh}, {"skin", bind}}, JointId());
     addWeights();
   }
 
@@ -202,8 +204,8 @@ class GridWriter {
       const std::size_t count = recordings_[r]->frames.size();
       for (std::size_t f = first; f < first + count; ++f)
         values.insert(values.end(), basis_.weights[f].begin(), basis_.weights[f].end());
-      animations_[r].add(glb_.addTimes(timesOf(*recordings_[r])), glb_.addShares(values), skinNode_,
-                         "weights");
+      const int times = glb_.addTimes(timesOf(*recordings_[r]));
+      addGltfTrack(animations_[r], times, glb_.addShares(values), skinNode_, "weights");
       first += count;
     }
   }
@@ -216,12 +218,12 @@ class GridWriter {
   double size_m_ = 0;
   SkinningDecomposition skinning_;
   MorphBasis basis_;  // empty for GridWay::bones
-  GlbBuilder glb_;
+  GltfBuilder glb_;
   GltfCharacterNodes nodes_;
-  std::vector<GltfAnimation> animations_;  // per recording
-  std::vector<std::size_t> bones_;         // nodes: joints, then helpers
+  std::vector<Json> animations_;  // per recording
+  std::vector<int> bones_;        // nodes: joints, then helpers
   std::vector<Eigen::Matrix4f> inverseBind_;
-  std::size_t skinNode_ = 0;
+  int skinNode_ = 0;
   std::vector<int> animationOf_;  // per recording; -1: nothing moves
 };
 
@@ -241,7 +243,7 @@ GridBakeReport writeGridGlb(const Character& character,
                             std::span<const Recording* const> recordings,
                             const GridBakeOptions& options, const std::string& path) {
   checkNames(recordings);
-  GridWriter writer(character, recordings, options);
+  GridWriter writer(character, recordings, options, path);
   const std::string bytes = writer.write();
   writeFileWhole(path, bytes);
   GridBakeReport report;

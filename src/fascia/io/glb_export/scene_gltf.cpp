@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include <fascia/io/file/file.h>
+#include <fascia/io/glb_export/character_gltf.h>
+#include <fascia/io/glb_export/gltf_skin.h>
 #include <fascia/io/glb_export/gltf_tracks.h>
+#include <fascia/io/gltf/gltf_animation.h>
 #include <fascia/math/nearest_rotation.h>
 #include <fascia/skeleton/euler.h>
 
@@ -43,8 +46,8 @@ BodyMotion motionOf(const BodyShape& shape, BodyId id, const BodyModel& model,
 
 class SceneWriter {
  public:
-  SceneWriter(const Stage& stage, const StageRecording& recording)
-      : stage_(stage), recording_(recording) {
+  SceneWriter(const Stage& stage, const StageRecording& recording, const std::string& path)
+      : stage_(stage), recording_(recording), glb_(path) {
     for (const StageRecording::Frame& frame : recording.frames)
       times_.push_back(static_cast<float>(frame.time_s - recording.frames.front().time_s));
   }
@@ -53,7 +56,7 @@ class SceneWriter {
     for (std::size_t b = 0; b < stage_.bodies().bodyCount(); ++b) addBody(BodyId(b));
     for (std::size_t i = 0; i < stage_.def().props.size(); ++i) addProp(i);
     for (std::size_t i = 0; i < recording_.characters.size(); ++i) addActor(i);
-    return finishGlb(stage_.def().name, roots_, {{"performance", std::move(animation_)}}, glb_);
+    return finishGlb(stage_.def().name, roots_, {std::move(animation_)}, glb_);
   }
 
  private:
@@ -61,7 +64,7 @@ class SceneWriter {
     const BodyShape& shape = stage_.bodies().shape(id);
     const SceneBodyDef& def = stage_.body(id);
     const BodyMotion motion = motionOf(shape, id, stage_.bodies(), recording_);
-    const std::size_t node = glb_.add("nodes", placeNode(def.name, motion.place));
+    const int node = glb_.add("nodes", placeNode(def.name, motion.place));
     roots_.push_back(node);
     // Morph targets are added to just this place: a looser track would show in every vertex.
     addTracks(times_, motion.place, node, glb_, animation_,
@@ -72,8 +75,8 @@ class SceneWriter {
       const std::string name = def.ornaments[i].name.empty()
                                    ? def.name + " ornament " + std::to_string(i)
                                    : def.ornaments[i].name;
-      const std::size_t child = glb_.add("nodes", {{"name", name}});
-      glb_.root["nodes"][node]["children"].push_back(child);
+      const int child = glb_.add("nodes", Json::Object{{"name", name}});
+      ensureList(glb_.document.item("nodes", node), "children").list().push_back(child);
       addMorphs(shape, motion, stage_.ornaments(id)[i], def.ornaments[i].color, name, child);
     }
   }
@@ -81,7 +84,7 @@ class SceneWriter {
   // The mesh with a morph target for each coordinate that changes. Weights run from 0 to 1: some
   // programs clamp others. The base is the shape with all coordinates at their least.
   void addMorphs(const BodyShape& shape, const BodyMotion& motion, const TriangleMesh& undeformed,
-                 const Color& color, const std::string& name, std::size_t node) {
+                 const Color& color, const std::string& name, int node) {
     TriangleMesh mesh = undeformed;
     if (mesh.normals.size() != mesh.positions.size())
       computeNormals(mesh.positions, mesh.triangles, mesh.normals);
@@ -89,31 +92,18 @@ class SceneWriter {
     deform(shape, motion, mesh);
     for (Coordinate& c : coordinates) toBase(c, mesh);
     normalize(mesh.normals, coordinates);
-    GltfJson primitive = addPrimitive(mesh, material(color), glb_);
-    GltfJson out = {{"name", name}};
-    if (!coordinates.empty()) {
-      const auto vertices = GlbBuilder::Target::vertices;
-      GltfJson targets = GltfJson::array(), names = GltfJson::array();
-      std::vector<float> first;
-      for (const Coordinate& c : coordinates) {
-        targets.push_back({{"POSITION", glb_.addVectors(c.moved, true, vertices)},
-                           {"NORMAL", glb_.addVectors(c.turned, false, vertices)}});
-        std::string coordinate(1, "xyz"[c.row]);
-        names.push_back(coordinate += std::to_string(c.function));
-        first.push_back(c.weights.front());
-      }
-      primitive["targets"] = std::move(targets);
-      out["weights"] = first;
-      out["extras"] = {{"targetNames", names}};
-      std::vector<float> weights;
-      for (std::size_t f = 0; f < times_.size(); ++f)
-        for (const Coordinate& c : coordinates) weights.push_back(c.weights[f]);
-      if (times_.size() > 1)
-        animation_.add(glb_.addScalars(times_, true), glb_.addScalars(weights, false), node,
-                       "weights");
+    Json primitive = addPrimitive(mesh, material(color), glb_);
+    MorphTargets targets;
+    for (const Coordinate& c : coordinates) {
+      const auto vertices = GltfBuilder::Target::vertices;
+      const int positions = glb_.addVectors(c.moved, true, vertices);
+      std::string coordinate(1, "xyz"[c.row]);
+      targets.add(morphTarget(positions, glb_.addVectors(c.turned, false, vertices)),
+                  coordinate += std::to_string(c.function), c.weights.front());
     }
-    out["primitives"] = GltfJson::array({primitive});
-    glb_.root["nodes"][node]["mesh"] = glb_.add("meshes", std::move(out));
+    if (!coordinates.empty() && times_.size() > 1) animateWeights(coordinates, node);
+    const int index = addMesh(name, std::move(primitive), std::move(targets), glb_);
+    glb_.document.item("nodes", node).set("mesh", index);
   }
 
   // One entry of A over time, and what it moves by its whole range.
@@ -124,6 +114,14 @@ class SceneWriter {
     std::vector<float> weights;                  // per frame, in [0, 1]
     std::vector<Eigen::Vector3f> moved, turned;  // positions, normals
   };
+
+  void animateWeights(const std::vector<Coordinate>& coordinates, int node) {
+    std::vector<float> weights;
+    for (std::size_t f = 0; f < times_.size(); ++f)
+      for (const Coordinate& c : coordinates) weights.push_back(c.weights[f]);
+    const int input = glb_.addTimes(times_);
+    addGltfTrack(animation_, input, glb_.addScalars(weights, false), node, "weights");
+  }
 
   static std::vector<Coordinate> changing(const BodyShape& shape, const BodyMotion& motion,
                                           const TriangleMesh& mesh) {
@@ -194,44 +192,38 @@ class SceneWriter {
     }
   }
 
-  std::size_t material(const Color& color) {
-    const GltfJson surface = {{"baseColorFactor", linearColor(color.r, color.g, color.b)},
-                              {"metallicFactor", 0.0},
-                              {"roughnessFactor", 0.45}};
-    return glb_.add("materials", {{"pbrMetallicRoughness", surface}});
-  }
+  int material(const Color& color) { return addMaterial(color, 0.45, glb_); }
 
   void addProp(std::size_t index) {
     const PlacedSolidDef& def = stage_.def().props[index];
     TriangleMesh mesh = stage_.prop(index).solid(SolidId(0)).tessellate(48);
     if (mesh.normals.size() != mesh.positions.size())
       computeNormals(mesh.positions, mesh.triangles, mesh.normals);
-    const GltfJson primitive = addPrimitive(mesh, material(def.color), glb_);
+    Json primitive = addPrimitive(mesh, material(def.color), glb_);
     PlaceTrack place;
     place.add(stage_.prop(index).frame(SolidId(0)));
-    GltfJson node = placeNode(def.name, place);
-    node["mesh"] =
-        glb_.add("meshes", {{"name", def.name}, {"primitives", GltfJson::array({primitive})}});
+    Json node = placeNode(def.name, place);
+    node.set("mesh", addMesh(def.name, std::move(primitive), {}, glb_));
     roots_.push_back(glb_.add("nodes", std::move(node)));
   }
 
   void addActor(std::size_t index) {
     const SceneCharacterDef& def = stage_.def().characters[index];
-    const GlbCharacter added =
+    const GltfCharacter added =
         addCharacter(*def.character, recording_.characters[index], GlbOptions{}, glb_, animation_);
     PlaceTrack place;
     place.add(placeOf(def));
-    GltfJson node = placeNode(def.name, place);
-    node["children"] = added.roots;
+    Json node = placeNode(def.name, place);
+    if (!added.roots.empty()) node.set("children", numberList(added.roots));
     roots_.push_back(glb_.add("nodes", std::move(node)));
   }
 
   const Stage& stage_;
   const StageRecording& recording_;
   std::vector<float> times_;
-  GlbBuilder glb_;
-  GltfAnimation animation_;
-  std::vector<std::size_t> roots_;
+  GltfBuilder glb_;
+  Json animation_ = emptyAnimation("performance");
+  std::vector<int> roots_;
 };
 
 }  // namespace
@@ -239,7 +231,7 @@ class SceneWriter {
 GlbReport writeSceneGlb(const Stage& stage, const StageRecording& recording,
                         const std::string& path) {
   if (recording.frames.empty()) throw Error("a recording without frames cannot be exported");
-  const std::string bytes = SceneWriter(stage, recording).bytes();
+  const std::string bytes = SceneWriter(stage, recording, path).bytes();
   writeFileWhole(path, bytes);
   return {recording.frames.size(), bytes.size()};
 }

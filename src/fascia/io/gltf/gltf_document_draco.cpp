@@ -7,8 +7,8 @@
 #include <draco/core/varint_decoding.h>
 #include <draco/metadata/metadata_decoder.h>
 
+#include <fascia/io/gltf/gltf_accessor.h>
 #include <fascia/io/gltf/gltf_document.h>
-#include <fascia/io/gltf/gltf_document_accessor.h>
 
 namespace fascia {
 namespace {
@@ -184,13 +184,14 @@ void GltfDocument::unpackMesh(std::size_t mesh, std::size_t primitive) {
   const UnpackedPrimitive unpacked =
       unpackPrimitive(*this, root()["meshes"].at(mesh)["primitives"].at(primitive));
   for (const Attribute& a : unpacked.attributes) {
-    fillAccessor(json_, a.accessor, a.count, addView(a.data.data(), a.data.size(), 0, a.stride));
+    fillAccessor(json_, a.accessor, a.count,
+                 addView(a.data.data(), a.data.size(), Target::none, a.stride));
   }
   int indices = unpacked.indexAccessor;
   if (indices < 0) {
     indices = addIndices(unpacked.indices);
   } else {
-    const int view = addView(unpacked.indices.data(), unpacked.indices.size() * 4, 0);
+    const int view = addView(unpacked.indices.data(), unpacked.indices.size() * 4, Target::none);
     fillAccessor(json_, indices, unpacked.indices.size(), view);
     Json& entry = findMember(json_, "accessors")->list()[static_cast<std::size_t>(indices)];
     putMember(entry, "componentType", static_cast<int>(kGltfUnsignedInt));

@@ -5,8 +5,8 @@
 #include <fascia/io/file/byte_stream.h>
 #include <fascia/io/file/file.h>
 #include <fascia/io/file/inside_folder.h>
+#include <fascia/io/gltf/data_uri.h>
 #include <fascia/io/gltf/gltf_document.h>
-#include <fascia/io/gltf/gltf_document_uri.h>
 
 namespace fascia {
 namespace {

@@ -6,45 +6,12 @@
 #include <fascia/io/file/byte_stream.h>
 #include <fascia/io/file/file.h>
 #include <fascia/io/gltf/gltf_document.h>
-#include <fascia/io/gltf/gltf_document_references.h>
+#include <fascia/io/gltf/gltf_references.h>
 
 namespace fascia {
 namespace {
 
 constexpr std::size_t kMostGlbBytes = std::numeric_limits<std::uint32_t>::max();  // of a .glb
-
-void appendJson(const Json& value, std::string& out) {
-  switch (value.kind()) {
-    case Json::Kind::null:
-      out += "null";
-      return;
-    case Json::Kind::boolean:
-      out += value.boolean() ? "true" : "false";
-      return;
-    case Json::Kind::number:
-      out += value.digits();
-      return;
-    case Json::Kind::text:
-      out += jsonText(value.text());
-      return;
-    case Json::Kind::list:
-      for (const Json& item : value.list()) {
-        out += &item == value.list().data() ? '[' : ',';
-        appendJson(item, out);
-      }
-      out += value.list().empty() ? "[]" : "]";
-      return;
-    case Json::Kind::object:
-      for (const Json::Member& member : value.object()) {
-        out += &member == value.object().data() ? '{' : ',';
-        out += jsonText(member.key);
-        out += ':';
-        appendJson(member.value, out);
-      }
-      out += value.object().empty() ? "{}" : "}";
-      return;
-  }
-}
 
 // Keeps the entries of a list that are referred to; renumbers the references.
 void dropUnused(Json& root, const char* list, const std::vector<Json*>& references) {
@@ -136,8 +103,7 @@ class Packer {
 };
 
 std::string glbOf(const Json& json, std::string binary, const std::string& path) {
-  std::string text;
-  appendJson(json, text);
+  std::string text = compactJson(json);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   binary.resize((binary.size() + 3) / 4 * 4);
   const std::size_t total = 12 + 8 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
@@ -166,13 +132,10 @@ std::string glbOf(const Json& json, std::string binary, const std::string& path)
 }  // namespace
 
 int GltfDocument::addImage(std::span<const std::uint8_t> encoded) {
-  Json entry{Json::Object{}};
-  entry.set("bufferView", addView(encoded.data(), encoded.size(), 0));
+  Json image = Json::Object{{"bufferView", addView(encoded.data(), encoded.size(), Target::none)}};
   if (const char* mimeType = mimeTypeOf({encoded.begin(), encoded.end()}))
-    entry.set("mimeType", mimeType);
-  Json::List& images = ensureList(json_, "images").list();
-  images.push_back(std::move(entry));
-  return static_cast<int>(images.size()) - 1;
+    image.set("mimeType", mimeType);
+  return add("images", std::move(image));
 }
 
 void GltfDocument::embedImages() {
@@ -182,7 +145,7 @@ void GltfDocument::embedImages() {
     const std::vector<std::uint8_t> bytes = image(static_cast<int>(i));
     const char* mimeType = mimeTypeOf(bytes);
     if (!mimeType) continue;  // not found, or nothing that a .glb may hold: stays where it is
-    const int view = addView(bytes.data(), bytes.size(), 0);
+    const int view = addView(bytes.data(), bytes.size(), Target::none);
     Json& entry = findMember(json_, "images")->list()[i];
     eraseMember(entry, "uri");
     putMember(entry, "bufferView", view);
@@ -209,9 +172,7 @@ std::string GltfDocument::glb() const {
   std::string binary = Packer().pack(views, packed.buffers_, json);
   eraseMember(json, "buffers");
   if (!binary.empty()) {
-    Json buffer{Json::Object{}};
-    buffer.set("byteLength", Json::Number{std::to_string(binary.size())});
-    ensureList(json, "buffers").list().push_back(std::move(buffer));
+    putMember(json, "buffers", Json::List{Json::Object{{"byteLength", binary.size()}}});
   }
   return glbOf(json, std::move(binary), path_);
 }

@@ -1,15 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace fascia {
-
-// What one file may hold: more would only fill the memory.
-inline constexpr std::size_t kMostGltfVertices = 4'000'000;
-inline constexpr std::size_t kMostGltfCorners = 6 * kMostGltfVertices;
 
 inline constexpr int kGltfTriangles = 4, kGltfFan = 6;  // between them: strips; below: no triangles
 

@@ -24,36 +24,6 @@ std::string digitsOf(T value) {
   return digits;
 }
 
-std::string unescapedPointerKey(std::string_view key) {
-  std::string out;
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    const bool escape = key[i] == '~' && i + 1 < key.size();
-    if (!escape) {
-      out += key[i];
-    } else {
-      out += key[++i] == '1' ? '/' : '~';
-    }
-  }
-  return out;
-}
-
-// The child of `value` that a pointer's part names, and the part as the file spells it.
-const Json* child(const Json& value, const std::string& part, std::string& spelled) {
-  spelled = part;
-  if (value.is(Json::Kind::list)) {
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-    const bool whole = error == std::errc() && end == part.data() + part.size();
-    return whole && index < value.list().size() ? &value.list()[index] : nullptr;
-  }
-  if (const Json* found = value.find(part)) return found;
-  if (part.ends_with("_rad")) {
-    spelled = part.substr(0, part.size() - 3) + "deg";
-    return value.find(spelled);
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 Json::Json(double value) : value_(Number{shortestDigits(value)}) {}
@@ -99,39 +69,33 @@ std::string escapedPointerKey(std::string_view key) {
   return out;
 }
 
-Location LineIndex::locate(std::string_view pointer) const {
-  Location where{file_, 0, {}};
-  if (!root_) {
-    where.pointer = pointer;
-    return where;
+Json* findMember(Json& object, std::string_view key) {
+  if (!object.is(Json::Kind::object)) return nullptr;
+  for (Json::Member& member : object.object()) {
+    if (member.key == key) return &member.value;
   }
-  const Json* at = root_.get();
-  where.line = at->line();
-  std::string unmatched;  // trailing parts that the file lacks, e.g. a missing key
-  while (!pointer.empty()) {
-    pointer.remove_prefix(1);  // the slash
-    const std::size_t end = std::min(pointer.find('/'), pointer.size());
-    const std::string part = unescapedPointerKey(pointer.substr(0, end));
-    pointer.remove_prefix(end);
-    std::string spelled;
-    if (const Json* next = child(*at, part, spelled)) {
-      at = next;
-      where.line = at->line();
-      where.pointer += '/';
-      where.pointer += escapedPointerKey(spelled);
-      unmatched.clear();
-    } else {
-      unmatched += '/';
-      unmatched += escapedPointerKey(spelled);
-    }
-  }
-  where.pointer += unmatched;
-  return where;
+  return nullptr;
 }
 
-std::vector<Issue> LineIndex::locate(std::vector<Issue> issues) const {
-  for (Issue& issue : issues) issue.where = locate(issue.where.pointer);
-  return issues;
+Json& ensureMember(Json& object, std::string_view key) {
+  if (Json* found = findMember(object, key)) return *found;
+  object.set(std::string(key), Json());
+  return object.object().back().value;
+}
+
+Json& ensureList(Json& object, std::string_view key) {
+  Json& member = ensureMember(object, key);
+  if (!member.is(Json::Kind::list)) member = Json(Json::List{});
+  return member;
+}
+
+void putMember(Json& object, std::string_view key, Json value) {
+  ensureMember(object, key) = std::move(value);
+}
+
+void eraseMember(Json& object, std::string_view key) {
+  if (!object.is(Json::Kind::object)) return;
+  std::erase_if(object.object(), [&](const Json::Member& member) { return member.key == key; });
 }
 
 }  // namespace fascia

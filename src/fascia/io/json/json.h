@@ -1,7 +1,7 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,15 +26,17 @@ class Json {
 
   // Defined below: Member must be complete.
   Json();
-  Json(bool value);              // NOLINT: values convert
-  Json(double value);            // NOLINT: shortest digits
-  Json(int value);               // NOLINT
-  Json(Number value);            // NOLINT
-  Json(std::string value);       // NOLINT
-  Json(std::string_view value);  // NOLINT
-  Json(const char* value);       // NOLINT
-  Json(List value);              // NOLINT
-  Json(Object value);            // NOLINT
+  Json(bool value);    // NOLINT: values convert
+  Json(double value);  // NOLINT: shortest digits
+  Json(int value);     // NOLINT
+  template <std::unsigned_integral T>
+  requires(!std::same_as<T, bool>) Json(T value);  // NOLINT
+  Json(Number value);                              // NOLINT
+  Json(std::string value);                         // NOLINT
+  Json(std::string_view value);                    // NOLINT
+  Json(const char* value);                         // NOLINT
+  Json(List value);                                // NOLINT
+  Json(Object value);                              // NOLINT
   Json(const Json& other);
   Json(Json&& other) noexcept;
   Json& operator=(const Json& other);
@@ -72,6 +74,8 @@ struct Json::Member {
 inline Json::Json() = default;
 inline Json::Json(bool value) : value_(value) {}
 inline Json::Json(int value) : value_(Number{std::to_string(value)}) {}
+template <std::unsigned_integral T>
+requires(!std::same_as<T, bool>) Json::Json(T value) : value_(Number{std::to_string(value)}) {}
 inline Json::Json(Number value) : value_(std::move(value)) {}
 inline Json::Json(std::string value) : value_(std::move(value)) {}
 inline Json::Json(std::string_view value) : value_(std::string(value)) {}
@@ -98,6 +102,7 @@ Json parseJson(std::string_view text, const JsonLimits& limits, std::vector<Issu
 // Indented by two; lists of plain values and small objects on one line of at most 100 characters
 // (lists of numbers always on one line). Ends with a newline.
 std::string printJson(const Json& value);
+std::string compactJson(const Json& value);  // without spaces, on one line
 
 // Shortest digits that read back to the same bits. Throws Error for NaN and infinities, which JSON
 // cannot hold.
@@ -107,23 +112,24 @@ std::string shortestDigits(float value);
 std::string jsonText(std::string_view text);          // quoted and escaped as JSON wants it
 std::string escapedPointerKey(std::string_view key);  // "a/b" -> "a~1b" (RFC 6901)
 
-// Finds places in a parsed file, so that faults found later (while building) get a line too.
-class LineIndex {
- public:
-  LineIndex() = default;
-  LineIndex(Json root, std::string file)
-      : root_(std::make_shared<const Json>(std::move(root))), file_(std::move(file)) {}
+// Numbers of one kind as a list; floats by digits that read back to the same float.
+template <class Values>
+Json numberList(const Values& values) {
+  Json::List list;
+  for (const auto value : values) {
+    if constexpr (std::same_as<decltype(value), const float>)
+      list.emplace_back(Json::Number{shortestDigits(value)});
+    else
+      list.emplace_back(value);
+  }
+  return list;
+}
 
-  // The line of the place or of its nearest ancestor in the file. Parts of the pointer that name
-  // our structures but not the file's ("/flesh/solids/2", "…_rad") are matched to the file's.
-  Location locate(std::string_view pointer) const;
-  // The same issues with file, line and the file's own pointers.
-  std::vector<Issue> locate(std::vector<Issue> issues) const;
-  const std::string& file() const { return file_; }
-
- private:
-  std::shared_ptr<const Json> root_;
-  std::string file_;
-};
+// Editing. Each finds the member of an object (null becomes one), made if it is missing.
+Json* findMember(Json& object, std::string_view key);  // nullptr: no object, or no such member
+Json& ensureMember(Json& object, std::string_view key);
+Json& ensureList(Json& object, std::string_view key);
+void putMember(Json& object, std::string_view key, Json value);
+void eraseMember(Json& object, std::string_view key);
 
 }  // namespace fascia

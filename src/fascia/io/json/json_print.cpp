@@ -17,8 +17,16 @@ bool isNumberList(const Json& value) {
   return true;
 }
 
+// What stands between the parts of a value on one line.
+struct Separators {
+  const char *item, *member;
+};
+constexpr Separators kSpaced{", ", ": "}, kDense{",", ":"};
+constexpr std::size_t kAnyLength = static_cast<std::size_t>(-1);
+
 // Appends the value on one line; gives up (false) once `out` exceeds `limit` characters.
-bool printOnOneLine(const Json& value, std::size_t limit, std::string& out) {
+bool printOnOneLine(const Json& value, const Separators& between, std::size_t limit,
+                    std::string& out) {
   switch (value.kind()) {
     case Json::Kind::null:
       out += "null";
@@ -35,8 +43,8 @@ bool printOnOneLine(const Json& value, std::size_t limit, std::string& out) {
     case Json::Kind::list: {
       out += '[';
       for (const Json& item : value.list()) {
-        if (&item != value.list().data()) out += ", ";
-        if (!printOnOneLine(item, limit, out)) return false;
+        if (&item != value.list().data()) out += between.item;
+        if (!printOnOneLine(item, between, limit, out)) return false;
       }
       out += ']';
       break;
@@ -44,9 +52,9 @@ bool printOnOneLine(const Json& value, std::size_t limit, std::string& out) {
     case Json::Kind::object: {
       out += '{';
       for (const Json::Member& member : value.object()) {
-        if (&member != value.object().data()) out += ", ";
-        out += jsonText(member.key) + ": ";
-        if (!printOnOneLine(member.value, limit, out)) return false;
+        if (&member != value.object().data()) out += between.item;
+        out += jsonText(member.key) + between.member;
+        if (!printOnOneLine(member.value, between, limit, out)) return false;
       }
       out += '}';
       break;
@@ -61,12 +69,12 @@ class Printer {
 
   void print(const Json& value, std::size_t indent, std::size_t used, bool root) {
     if (!isContainer(value) || isNumberList(value)) {
-      printOnOneLine(value, static_cast<std::size_t>(-1), out);
+      printOnOneLine(value, kSpaced, kAnyLength, out);
       return;
     }
     std::string line;
     const std::size_t room = used + 1 < kLineWidth ? kLineWidth - used - 1 : 0;
-    if (!root && printOnOneLine(value, room, line)) {
+    if (!root && printOnOneLine(value, kSpaced, room, line)) {
       out += line;
       return;
     }
@@ -102,6 +110,12 @@ class Printer {
 };
 
 }  // namespace
+
+std::string compactJson(const Json& value) {
+  std::string out;
+  printOnOneLine(value, kDense, kAnyLength, out);
+  return out;
+}
 
 std::string printJson(const Json& value) {
   Printer printer;

@@ -13,7 +13,8 @@ namespace fascia {
 
 // A simulated motion of an imported character, to be written back into the file that it came from.
 struct RigClip {
-  const RiggedModel& model;    // its sourceFile must be unchanged since it was read
+  // If it came from a glTF, that must be unchanged since it was read.
+  const RiggedModel& model;
   const Recording& recording;  // skin_m: model.vertices, in their order
   // Frame by frame, per joint of the model: the world frames that the skin was simulated with.
   const std::vector<std::vector<Transform>>& joints_world;
@@ -40,9 +41,10 @@ struct RigBakeReport {
   bool plain = false;  // nothing moved beyond that skinning: nothing was looked for, nothing added
 };
 
-// Each writes a whole GLB or nothing, and throws Error. Everything of the source file that is not
+// Each writes a whole GLB or nothing, and throws Error. Everything of a source glTF that is not
 // about the baked motions survives: names, joints, materials, pictures, extensions, extras, other
-// meshes and other animations. All clips are of one model, and have names of their own.
+// meshes and other animations. Of other formats what the model holds survives, in metres. All clips
+// are of one model, and have names of their own.
 
 // Helper bones below the rig's joints and new weights, the same for all motions: plays in every
 // engine. In the file's other motions helpers move so that the surface stays as it was there.

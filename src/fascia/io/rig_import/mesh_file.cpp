@@ -5,9 +5,10 @@
 #include <fascia/base/index.h>
 #include <fascia/geometry/weld.h>
 #include <fascia/io/gltf/gltf_triangles.h>
-#include <fascia/io/rig_import/gltf/rig_gltf.h>
-#include <fascia/io/rig_import/gltf/rig_gltf_scene.h>
-#include <fascia/io/rig_import/rig_to_gltf.h>
+#include <fascia/io/rig_import/gltf/gltf_scene.h>
+#include <fascia/io/rig_import/gltf/rig_from_gltf.h>
+#include <fascia/io/rig_import/rig_import.h>
+#include <fascia/io/rig_model/rig_limits.h>
 
 namespace fascia {
 namespace {
@@ -39,8 +40,8 @@ class SurfaceReader {
     const int mode = place["mode"].indexOr(kGltfTriangles, 7);
     if (mode < kGltfTriangles || !positions) return;
     const int accessor = positions.index(accessors_);
-    if (document_.elementCount(accessor) > kMostGltfVertices - mesh_.positions.size())
-      positions.fail("more than " + std::to_string(kMostGltfVertices) + " vertices in one mesh");
+    if (document_.elementCount(accessor) > kMostRigVertices - mesh_.positions.size())
+      positions.fail("more than " + std::to_string(kMostRigVertices) + " vertices in one mesh");
     const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
     const std::vector<float> local = document_.floats(accessor, 3);
     for (std::size_t v = 0; v < local.size() / 3; ++v) {
@@ -57,8 +58,8 @@ class SurfaceReader {
     std::vector<std::uint32_t> run;
     if (const GltfPlace indices = place["indices"]) {
       corners_ += document_.elementCount(indices.index(accessors_));
-      if (corners_ > kMostGltfCorners)
-        indices.fail("more than " + std::to_string(kMostGltfCorners) + " corners of triangles");
+      if (corners_ > kMostRigCorners)
+        indices.fail("more than " + std::to_string(kMostRigCorners) + " corners of triangles");
       run = document_.integers(indices.index(accessors_), 1);
     } else {
       for (std::uint32_t i = 0; i < count; ++i) run.push_back(i);
@@ -98,13 +99,17 @@ TriangleMesh welded(const TriangleMesh& cut) {
   return out;
 }
 
+TriangleMesh surfaceOf(RiggedModel model) {
+  return {std::move(model.points_m), {}, {}, std::move(model.triangles)};
+}
+
 }  // namespace
 
 TriangleMesh readMeshFile(const std::string& path) {
-  const GltfDocument document = readAsGltf(path);
+  if (!isGltfFile(path)) return surfaceOf(readRiggedModel(path));
+  const GltfDocument document = GltfDocument::read(path);
   if (document.root()["skins"].size() == 0) return welded(SurfaceReader(document).read());
-  const RiggedModel model = rigFromGltf(document, {});
-  return {model.points_m, {}, {}, model.triangles};
+  return surfaceOf(rigFromGltf(document));
 }
 
 }  // namespace fascia

@@ -19,7 +19,8 @@
 #include <fascia/base/error.h>
 #include <fascia/io/file/file.h>
 #include <fascia/io/rig_import/assimp/assimp_scene.h>
-#include <fascia/io/rig_import/rig_to_gltf.h>
+#include <fascia/io/rig_model/finish_model.h>
+#include <fascia/io/rig_model/rig_stream.h>
 
 namespace fascia {
 namespace {
@@ -64,7 +65,8 @@ class FolderOnly : public Assimp::DefaultIOSystem {
   std::string folder_;
 };
 
-std::string convert(const std::string& path) {
+// The model and its notes, as bytes.
+std::string convert(const std::string& path, double scale) {
   Assimp::Importer importer;
   importer.SetIOHandler(new FolderOnly(path));  // the importer's from here on
   // Nodes that hold pieces of one joint's transformation are joined to that joint.
@@ -77,7 +79,20 @@ std::string convert(const std::string& path) {
   if (!scene || !scene->mRootNode) {
     throw Error(issueOf(path, std::string("cannot be read: ") + importer.GetErrorString()));
   }
-  return gltfOf(rigFromAssimp(*scene, path)).glb();
+  const RiggedModel model = rigFromAssimp(*scene, path, scale);
+  ByteWriter out;
+  writeRig(model, model.motions, out);
+  out.value(static_cast<std::uint64_t>(model.notes.size()));
+  for (const std::string& note : model.notes) out.text(note);
+  return std::move(out.bytes);
+}
+
+RiggedModel modelOf(std::string_view bytes, const std::string& path) {
+  ByteReader in(bytes, path);
+  RiggedModel model = readRig(in);
+  const auto notes = in.value<std::uint64_t>();
+  for (std::uint64_t i = 0; i < notes; ++i) model.notes.push_back(in.text());
+  return model;
 }
 
 bool writeAll(int file, std::string_view bytes) {
@@ -96,7 +111,7 @@ void limit(__rlimit_resource what, rlim_t most) {
 }
 
 // In the child: what comes back starts with '+' or, before a message, '-'.
-[[noreturn]] void runChild(const std::string& path, int out) {
+[[noreturn]] void runChild(const std::string& path, double scale, int out) {
   limit(RLIMIT_CPU, kMaxSeconds);
   limit(RLIMIT_CORE, 0);
 #ifndef __SANITIZE_ADDRESS__  // which reserves more than any limit
@@ -104,7 +119,7 @@ void limit(__rlimit_resource what, rlim_t most) {
 #endif
   bool told = false;
   try {
-    const std::string result = convert(path);
+    const std::string result = convert(path, scale);
     told = writeAll(out, "+") && writeAll(out, result);
   } catch (const Error& error) {
     const Issue& issue = error.issues().front();
@@ -132,14 +147,14 @@ bool isAssimpEnding(std::string_view ending) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-GltfDocument readWithAssimp(const std::string& path) {
+RiggedModel readWithAssimp(const std::string& path, const RigImportOptions& options) {
   readFile(path, kMaxAssimpBytes);  // tells what is missing, no file, or too large
   int ends[2];
   if (pipe(ends) != 0) throw Error(issueOf(path, std::string("no pipe: ") + std::strerror(errno)));
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    runChild(path, ends[1]);
+    runChild(path, options.scale, ends[1]);
   }
   close(ends[1]);
   const std::string result = child < 0 ? std::string() : readAll(ends[0]);
@@ -155,7 +170,9 @@ GltfDocument readWithAssimp(const std::string& path) {
   if (status != 0 || !result.starts_with('+')) {
     throw Error(issueOf(path, "breaks the library that reads such files", "export it as .glb"));
   }
-  return GltfDocument::parse(std::string_view(result).substr(1), path);
+  RiggedModel model = modelOf(std::string_view(result).substr(1), path);
+  finishModel(path, options.scale, model);
+  return model;
 }
 
 }  // namespace fascia

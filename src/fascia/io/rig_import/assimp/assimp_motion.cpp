@@ -9,6 +9,8 @@
 #include <assimp/scene.h>
 
 #include <fascia/base/error.h>
+#include <fascia/io/rig_model/motion_sampling.h>
+#include <fascia/io/rig_model/rig_limits.h>
 
 namespace fascia {
 namespace {
@@ -17,7 +19,6 @@ constexpr double kRate_hz = 30;
 constexpr double kUsualTicks_per_s = 25;  // where the file does not say, after the library's manual
 // What a stranger's file may cost us; longer motions are cut.
 constexpr double kMaxDuration_s = 3600;
-constexpr std::size_t kMaxJointFrames = 20'000'000;
 constexpr std::size_t kMaxNodes = 65536;
 
 // A value between the keys around a time; keys are in the order of time.
@@ -55,25 +56,14 @@ AssimpFrame channelAt(const aiNodeAnim& channel, double time) {
   return out;
 }
 
-void appendFrame(const std::vector<Transform>& world, const RiggedModel& model,
-                 SampledMotion& motion) {
-  const std::size_t count = world.size(), before = motion.rotation.size();
-  for (std::size_t j = 0; j < count; ++j) {
-    const int parent = model.joints[j].parent;
-    const Transform local =
-        parent < 0 ? world[j] : world[static_cast<std::size_t>(parent)].inverse() * world[j];
-    Eigen::Quaternionf turn = Quat(local.rotation).normalized().cast<float>();
-    if (before > 0 && turn.dot(motion.rotation[before - count + j]) < 0) turn.coeffs() *= -1;
-    motion.rotation.push_back(turn);
-    motion.translation_m.push_back(local.translation_m.cast<float>());
-  }
+double ticksPerSecond(const aiAnimation& animation) {
+  return animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : kUsualTicks_per_s;
 }
 
-SampledMotion sample(const aiAnimation& animation, const AssimpNodes& nodes,
+SampledMotion sample(const aiAnimation& animation, const MotionPlan& plan, const AssimpNodes& nodes,
                      const std::vector<std::size_t>& nodeOfJoint, const RiggedModel& model) {
   SampledMotion motion;
-  motion.name = animation.mName.C_Str();
-  motion.rate_hz = kRate_hz;
+  motion.rate_hz = plan.rate_hz;
   for (const RigJoint& joint : model.joints) motion.joints.push_back(joint.name);
   std::vector<std::pair<std::size_t, const aiNodeAnim*>> channels;
   for (unsigned c = 0; c < animation.mNumChannels; ++c) {
@@ -84,20 +74,15 @@ SampledMotion sample(const aiAnimation& animation, const AssimpNodes& nodes,
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     local.push_back(affineOf(nodes.node(n).mTransformation));
   }
-  const double ticks =
-      animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : kUsualTicks_per_s;
-  const double duration = animation.mDuration > 0 ? animation.mDuration / ticks : 0;
-  const auto frames = std::min(
-      static_cast<std::size_t>(std::round(std::min(duration, kMaxDuration_s) * kRate_hz)) + 1,
-      kMaxJointFrames / model.joints.size());
   std::vector<Transform> joints(nodeOfJoint.size());
-  for (std::size_t f = 0; f < frames; ++f) {
-    const double time = static_cast<double>(f) / kRate_hz * ticks;
+  for (std::size_t f = 0; f < plan.frames; ++f) {
+    const double time = static_cast<double>(f) / plan.rate_hz * ticksPerSecond(animation);
     for (const auto& [node, channel] : channels) local[node] = channelAt(*channel, time);
     nodes.pose(local, world);
     for (std::size_t j = 0; j < joints.size(); ++j) joints[j] = rigidOf(world[nodeOfJoint[j]]);
-    appendFrame(joints, model, motion);
+    appendFrame(model, joints, motion);
   }
+  closeLoop(model.size_m(), motion);
   return motion;
 }
 
@@ -145,7 +130,9 @@ Transform rigidOf(const AssimpFrame& frame) {
   Transform out;
   out.translation_m = frame.translation();
   const double size = frame.linear().norm();
-  if (!std::isfinite(size) || size == 0 || !out.translation_m.allFinite()) return {};
+  const bool isPlace = isSane(out.translation_m.x()) && isSane(out.translation_m.y()) &&
+                       isSane(out.translation_m.z());
+  if (!std::isfinite(size) || size == 0 || !isPlace) return {};
   // The nearest rotation (Higham 1986): both factors of the singular value decomposition.
   const Eigen::JacobiSVD<Mat3> svd(frame.linear() / size,
                                    Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -155,14 +142,26 @@ Transform rigidOf(const AssimpFrame& frame) {
   return out;
 }
 
-std::vector<SampledMotion> sampleMotions(const aiScene& scene, const AssimpNodes& nodes,
-                                         const std::vector<std::size_t>& nodeOfJoint,
-                                         const RiggedModel& model) {
-  std::vector<SampledMotion> motions;
+void sampleMotions(const aiScene& scene, const AssimpNodes& nodes,
+                   const std::vector<std::size_t>& nodeOfJoint, RiggedModel& model) {
+  std::vector<MotionSpan> spans;
   for (unsigned a = 0; a < scene.mNumAnimations; ++a) {
-    motions.push_back(sample(*scene.mAnimations[a], nodes, nodeOfJoint, model));
+    const aiAnimation& animation = *scene.mAnimations[a];
+    const double duration_s =
+        animation.mDuration > 0 ? animation.mDuration / ticksPerSecond(animation) : 0;
+    // A whole number of frames, at just that rate.
+    const double frames = std::round(std::min(duration_s, kMaxDuration_s) * kRate_hz);
+    spans.push_back({animation.mName.C_Str(), frames / kRate_hz, kRate_hz});
+    if (spans.back().name.empty()) spans.back().name = "animation " + std::to_string(a + 1);
   }
-  return motions;
+  const std::vector<MotionPlan> plans = planMotions(spans, nodeOfJoint.size(), model.notes);
+  MotionNames names;
+  for (std::size_t a = 0; a < plans.size(); ++a) {
+    if (plans[a].frames == 0) continue;
+    SampledMotion motion = sample(*scene.mAnimations[a], plans[a], nodes, nodeOfJoint, model);
+    motion.name = names.next(spans[a].name);
+    model.motions.push_back(std::move(motion));
+  }
 }
 
 }  // namespace fascia

@@ -40,9 +40,8 @@ class AssimpNodes {
 AssimpFrame affineOf(const aiMatrix4x4& matrix);
 Transform rigidOf(const AssimpFrame& frame);  // without scale and shear
 
-// All animations at a constant rate, as frames of the model's joints.
-std::vector<SampledMotion> sampleMotions(const aiScene& scene, const AssimpNodes& nodes,
-                                         const std::vector<std::size_t>& nodeOfJoint,
-                                         const RiggedModel& model);
+// All animations at a constant rate, as the model's motions.
+void sampleMotions(const aiScene& scene, const AssimpNodes& nodes,
+                   const std::vector<std::size_t>& nodeOfJoint, RiggedModel& model);
 
 }  // namespace fascia

@@ -11,15 +11,17 @@
 #include <assimp/scene.h>
 
 #include <fascia/base/error.h>
+#include <fascia/base/suggest.h>
 #include <fascia/io/file/file.h>
 #include <fascia/io/picture/image.h>
 #include <fascia/io/rig_import/assimp/assimp_motion.h>
-#include <fascia/io/rig_import/rig_import_surface.h>
+#include <fascia/io/rig_model/rig_limits.h>
+#include <fascia/io/rig_model/simulated_surface.h>
 
 namespace fascia {
 namespace {
 
-constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
+constexpr std::size_t kMaxPictureFileBytes = std::size_t{256} << 20;
 
 Eigen::Vector3f vectorOf(const aiVector3D& v) {
   return {v.x, v.y, v.z};
@@ -39,22 +41,24 @@ double unitOf(const aiScene& scene) {
 
 class AssimpAssembler {
  public:
-  AssimpAssembler(const aiScene& scene, const std::string& path)
-      : scene_(scene), path_(path), nodes_(scene, unitOf(scene)) {
-    model_.name = std::filesystem::path(path).stem().string();
+  AssimpAssembler(const aiScene& scene, const std::string& path, double scale)
+      : scene_(scene), path_(path), nodes_(scene, scale * unitOf(scene)) {
     model_.sourceFile = path;
   }
 
   RiggedModel build() {
     addJoints();
+    makeNamesUnique(model_);
     for (unsigned m = 0; m < scene_.mNumMaterials; ++m) addMaterial(*scene_.mMaterials[m]);
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       const aiNode& node = nodes_.node(n);
       for (unsigned m = 0; m < node.mNumMeshes; ++m) addPart(n, *scene_.mMeshes[node.mMeshes[m]]);
     }
+    if (badCorners_ > 0)
+      model_.notes.push_back(std::to_string(badCorners_) +
+                             " triangles name vertices that are not there: left out");
     buildSimulatedSurface(positions_m_, weights_, model_);
-    model_.motions = sampleMotions(scene_, nodes_, nodeOfJoint_, model_);
-    makeNamesUnique(model_);
+    sampleMotions(scene_, nodes_, nodeOfJoint_, model_);
     return std::move(model_);
   }
 
@@ -64,7 +68,10 @@ class AssimpAssembler {
   void addMaterial(const aiMaterial& material);
   std::vector<std::uint8_t> pictureOf(const std::string& name) const;
   void addPart(std::size_t node, const aiMesh& mesh);
+  void addVertices(std::size_t node, const aiMesh& mesh);
+  void addTriangles(std::size_t node, const aiMesh& mesh, std::uint32_t firstVertex);
   void addWeights(std::size_t node, const aiMesh& mesh);
+  [[noreturn]] void refuse(const std::string& message, const std::string& hint = {}) const;
 
   const aiScene& scene_;
   const std::string& path_;
@@ -74,7 +81,16 @@ class AssimpAssembler {
   RiggedModel model_;
   std::vector<Eigen::Vector3f> positions_m_;
   std::vector<PointWeights> weights_;
+  std::size_t pictureBytes_ = 0, badCorners_ = 0;
 };
+
+void AssimpAssembler::refuse(const std::string& message, const std::string& hint) const {
+  Issue issue;
+  issue.where.file = path_;
+  issue.message = message;
+  issue.hint = hint;
+  throw Error(std::move(issue));
+}
 
 // Where the skins say that their bones are: node -> frame in the world. The first mesh decides.
 std::map<std::size_t, AssimpFrame> AssimpAssembler::bindPoses() const {
@@ -97,13 +113,9 @@ std::map<std::size_t, AssimpFrame> AssimpAssembler::bindPoses() const {
 // Every bone and all that it hangs on, up to the lowest node that holds all of them.
 void AssimpAssembler::addJoints() {
   const std::map<std::size_t, AssimpFrame> poses = bindPoses();
-  if (poses.empty()) {
-    Issue issue;
-    issue.where.file = path_;
-    issue.message = "needs a rig: found a surface without bones";
-    issue.hint = "rig it in another program, or take a file that has bones";
-    throw Error(std::move(issue));
-  }
+  if (poses.empty())
+    refuse("needs a rig: found a surface without bones",
+           "rig it in another program, or take a file that has bones");
   std::vector<std::size_t> bonesBelow(nodes_.size(), 0);
   for (const auto& [bone, pose] : poses) {
     for (int n = static_cast<int>(bone); n >= 0; n = nodes_.parent(static_cast<std::size_t>(n))) {
@@ -125,6 +137,8 @@ void AssimpAssembler::addJoints() {
       isLowest = !below(c);
     }
     if (bonesBelow[n] == 0 || (parent < 0 && !isLowest)) continue;
+    if (model_.joints.size() == kMostRigJoints)
+      refuse("more than " + std::to_string(kMostRigJoints) + " joints");
     const auto pose = poses.find(n);
     const AssimpFrame frame = pose != poses.end() ? pose->second
                               : parent >= 0       ? frames[static_cast<std::size_t>(parent)] *
@@ -149,7 +163,7 @@ std::vector<std::uint8_t> AssimpAssembler::pictureOf(const std::string& name) co
     const std::string bare = slash == std::string::npos ? name : name.substr(slash + 1);
     const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
     try {
-      const std::string text = readFile((folder / bare).string(), kMaxPictureBytes);
+      const std::string text = readFile((folder / bare).string(), kMaxPictureFileBytes);
       bytes.assign(text.begin(), text.end());
     } catch (const Error&) {
       bytes.clear();  // a character without its picture is still a character
@@ -178,6 +192,12 @@ void AssimpAssembler::addMaterial(const aiMaterial& material) {
       out.texture = pictureOf(text.C_Str());
     }
   }
+  if (out.texture.size() > kMostPictureBytes - pictureBytes_) {
+    model_.notes.push_back("the pictures of the materials are too large: left out from " +
+                           quotedName(out.name) + " on");
+    out.texture.clear();
+  }
+  pictureBytes_ += out.texture.size();
   model_.materials.push_back(std::move(out));
 }
 
@@ -210,43 +230,58 @@ void AssimpAssembler::addWeights(std::size_t node, const aiMesh& mesh) {
   }
 }
 
+void AssimpAssembler::addVertices(std::size_t node, const aiMesh& mesh) {
+  if (mesh.mNumVertices > kMostRigVertices - model_.vertices.size())
+    refuse("more than " + std::to_string(kMostRigVertices) + " vertices in one character");
+  const AssimpFrame& world = nodes_.world(node);
+  const Eigen::Matrix3f toNormal = world.linear().inverse().transpose().cast<float>();
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const Vec3 place = world * vectorOf(mesh.mVertices[v]).cast<double>();
+    if (!isSane(place.x()) || !isSane(place.y()) || !isSane(place.z()))
+      refuse(std::string("has a vertex that is no number, in mesh ") +
+             nodes_.node(node).mName.C_Str());
+    positions_m_.push_back(place.cast<float>());
+    RigVertex vertex;
+    if (mesh.mNormals) vertex.normal = (toNormal * vectorOf(mesh.mNormals[v])).normalized();
+    const bool isUnit = std::abs(vertex.normal.norm() - 1) < 1e-3f;  // not of zeros, no numbers
+    if (!isUnit) vertex.normal = Eigen::Vector3f::UnitY();
+    if (mesh.mTextureCoords[0]) {
+      const aiVector3D& uv = mesh.mTextureCoords[0][v];
+      if (isSane(uv.x) && isSane(uv.y)) vertex.uv = {uv.x, 1 - uv.y};
+    }
+    model_.vertices.push_back(vertex);
+  }
+}
+
+void AssimpAssembler::addTriangles(std::size_t node, const aiMesh& mesh,
+                                   std::uint32_t firstVertex) {
+  const bool mirrored = nodes_.world(node).linear().determinant() < 0;
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    if (std::max({face.mIndices[0], face.mIndices[1], face.mIndices[2]}) >= mesh.mNumVertices) {
+      ++badCorners_;
+      continue;
+    }
+    std::array<std::uint32_t, 3> corners;
+    for (unsigned k = 0; k < 3; ++k) corners[k] = firstVertex + face.mIndices[k];
+    if (mirrored) std::swap(corners[1], corners[2]);
+    model_.drawnTriangles.push_back(corners);
+  }
+  if (3 * model_.drawnTriangles.size() > kMostRigCorners)
+    refuse("more than " + std::to_string(kMostRigCorners) + " corners of triangles");
+}
+
 void AssimpAssembler::addPart(std::size_t node, const aiMesh& mesh) {
+  if (mesh.mNumVertices == 0 || (mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return;
   RigPart part;
   part.name = nodes_.node(node).mName.C_Str();
   part.material = static_cast<int>(mesh.mMaterialIndex);
   part.firstVertex = static_cast<std::uint32_t>(model_.vertices.size());
   part.vertexCount = mesh.mNumVertices;
   part.firstTriangle = static_cast<std::uint32_t>(model_.drawnTriangles.size());
-  const AssimpFrame& world = nodes_.world(node);
-  const Eigen::Matrix3f toNormal = world.linear().inverse().transpose().cast<float>();
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const Eigen::Vector3f place =
-        (world * vectorOf(mesh.mVertices[v]).cast<double>()).cast<float>();
-    if (!place.allFinite()) {
-      Issue issue;
-      issue.where.file = path_;
-      issue.message = "has a vertex that is no number, in mesh " + part.name;
-      throw Error(std::move(issue));
-    }
-    positions_m_.push_back(place);
-    RigVertex vertex;
-    if (mesh.mNormals) vertex.normal = (toNormal * vectorOf(mesh.mNormals[v])).normalized();
-    if (!vertex.normal.allFinite()) vertex.normal = Eigen::Vector3f::UnitY();
-    if (mesh.mTextureCoords[0]) {
-      const aiVector3D& uv = mesh.mTextureCoords[0][v];
-      if (std::isfinite(uv.x) && std::isfinite(uv.y)) vertex.uv = {uv.x, 1 - uv.y};
-    }
-    model_.vertices.push_back(vertex);
-  }
-  const bool mirrored = world.linear().determinant() < 0;
-  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-    const aiFace& face = mesh.mFaces[f];
-    if (face.mNumIndices != 3) continue;
-    std::array<std::uint32_t, 3> corners;
-    for (unsigned k = 0; k < 3; ++k) corners[k] = part.firstVertex + face.mIndices[k];
-    if (mirrored) std::swap(corners[1], corners[2]);
-    model_.drawnTriangles.push_back(corners);
-  }
+  addVertices(node, mesh);
+  addTriangles(node, mesh, part.firstVertex);
   part.triangleCount =
       static_cast<std::uint32_t>(model_.drawnTriangles.size()) - part.firstTriangle;
   addWeights(node, mesh);
@@ -255,8 +290,8 @@ void AssimpAssembler::addPart(std::size_t node, const aiMesh& mesh) {
 
 }  // namespace
 
-RiggedModel rigFromAssimp(const aiScene& scene, const std::string& path) {
-  return AssimpAssembler(scene, path).build();
+RiggedModel rigFromAssimp(const aiScene& scene, const std::string& path, double scale) {
+  return AssimpAssembler(scene, path, scale).build();
 }
 
 }  // namespace fascia

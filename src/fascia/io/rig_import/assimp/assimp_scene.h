@@ -9,6 +9,7 @@ struct aiScene;
 namespace fascia {
 
 // Part of readWithAssimp(): the library's scene as a model. Throws Error where it has no rig.
-RiggedModel rigFromAssimp(const aiScene& scene, const std::string& path);
+// Without what finishModel() does.
+RiggedModel rigFromAssimp(const aiScene& scene, const std::string& path, double scale);
 
 }  // namespace fascia

@@ -9,7 +9,8 @@
 #include <fascia/base/error.h>
 #include <fascia/io/file/gzip.h>
 #include <fascia/io/rig_import/makehuman/makehuman_rig.h>
-#include <fascia/io/rig_import/rig_import_surface.h>
+#include <fascia/io/rig_model/finish_model.h>
+#include <fascia/io/rig_model/simulated_surface.h>
 
 namespace fascia {
 namespace {
@@ -99,6 +100,7 @@ class MakeHumanAssembler {
       frame.translation_m.y() -= unit_m_ * floor_;
       model_.joints.push_back({bone.name, bone.parent, frame, -1});
     }
+    makeNamesUnique(model_);
     for (const KeptGroup& kept : kGroups) {
       const ObjMesh::Group* group = mesh_.find(kept.name);
       if (group && !group->corners.empty()) addPart(kept, *group);
@@ -207,8 +209,7 @@ RiggedModel readMakeHuman(const std::string& path, const RigImportOptions& optio
   const ObjMesh parsed = parseObj(readFileUnpacked(mesh.string(), kMaxMeshBytes), mesh.string());
   const MakeHumanRig bones = readMakeHumanRig(rig.string(), parsed);
   RiggedModel model = MakeHumanAssembler(parsed, bones, options.scale).build();
-  model.name = "MakeHuman";
-  model.sourceFile = path;
+  finishModel(path, options.scale, model);
   return model;
 }
 

@@ -2,7 +2,8 @@
 
 #include <string>
 
-#include <fascia/io/rig_import/rig_import.h>
+#include <fascia/io/rig_model/rig_import_options.h>
+#include <fascia/rig/rigged_model.h>
 
 namespace fascia {
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include <fascia/io/rig_export/rig_source.h>
+
+namespace fascia {
+
+// The animation of the document that holds the baked motion.
+struct BakedAnimation {
+  int index = 0;
+  float start_s = 0;         // of the recording's first frame, on the animation's clock
+  int times = 0;             // accessor: of the recording's frames
+  bool keepsJoints = false;  // the joints' channels are the file's own
+};
+
+// Finds the file's animation of the clip's name and keeps its channels, if the recording is of all
+// of it and moved the joints as it does; where players would not show that, joints get keys of the
+// recording. Otherwise writes the joints' motion alone: into that animation, or a new one.
+BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip);
+
+// Linear keys at the recording's frames. type: "VEC3"; path: "translation", "rotation", "weights".
+void addChannel(RigSource& source, const BakedAnimation& animation, int node, const char* path,
+                std::span<const float> values, std::string_view type);
+
+// Rotation and translation keys; neighbouring rotations turn the short way.
+void addRigidChannels(RigSource& source, const BakedAnimation& animation, int node,
+                      std::span<const Transform> local);
+
+// The animation's index as the importer named them; -1: none.
+int animationNamed(const RigSource& source, const std::string& name);
+
+}  // namespace fascia
