@@ -1,15 +1,38 @@
-# `cmake --install` gives an outside project find_package(fascia): headers, one target per module
-# and the package description.
+# `cmake --install` gives an outside project find_package(fascia): the target fascia::fascia, its
+# header fascia/fascia.h with those that it includes, and the package description. Static modules
+# come along as targets of their own, but what is behind the facade is nobody's business.
 include(CMakePackageConfigHelpers)
 get_property(modules GLOBAL PROPERTY FASCIA_MODULES)
 list(TRANSFORM modules PREPEND fascia_ OUTPUT_VARIABLE targets)
 set(packageDir "${CMAKE_INSTALL_LIBDIR}/cmake/fascia")
 
-install(TARGETS ${targets} EXPORT fascia-targets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-  COMPONENT library)
+# Every header that one of the list includes, itself included: paths from src/.
+function(fascia_reached_headers out)
+  set(waiting ${ARGN})
+  set(reached)
+  while(waiting)
+    list(POP_FRONT waiting header)
+    if(NOT header IN_LIST reached)
+      list(APPEND reached "${header}")
+      file(STRINGS "${PROJECT_SOURCE_DIR}/src/${header}" lines REGEX "^#include <fascia/")
+      list(TRANSFORM lines REPLACE "^#include <(fascia/[^>]+)>.*$" "\\1")
+      list(APPEND waiting ${lines})
+      set_property(DIRECTORY "${PROJECT_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+        "${PROJECT_SOURCE_DIR}/src/${header}")
+    endif()
+  endwhile()
+  set(${out} ${reached} PARENT_SCOPE)
+endfunction()
+
+install(TARGETS fascia_library ${targets} EXPORT fascia-targets
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library)
 install(EXPORT fascia-targets NAMESPACE fascia:: DESTINATION "${packageDir}" COMPONENT library)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/fascia" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
-  COMPONENT library FILES_MATCHING PATTERN "*.h")
+fascia_reached_headers(publicHeaders fascia/fascia.h)
+foreach(header IN LISTS publicHeaders)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES "${PROJECT_SOURCE_DIR}/src/${header}"
+    DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/${folder}" COMPONENT library)
+endforeach()
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/fascia-config.cmake.in"
   "${PROJECT_BINARY_DIR}/fascia-config.cmake" INSTALL_DESTINATION "${packageDir}")
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/fascia-config-version.cmake"

@@ -1,11 +1,11 @@
 #include <fascia/io/cache/cache.h>
 #include <fascia/io/documents/stats_writer.h>
 #include <fascia/render/character_scene.h>
+#include <fascia/render/player.h>
 
 #include "film.h"
 #include "film_parts.h"
 #include "outputs.h"
-#include "player.h"
 
 namespace fascia {
 namespace {
@@ -51,8 +51,9 @@ class CharacterFilm final : public Film {
     options_.aspect = look.aspect;
     options_.skin_texture = toPixels(footage_.texture);
     options_.rig_surface = rigSurface(footage_.character, console);
-    reach_ = motionReach(footage_.character,
-                         motion.empty() ? -1 : footage_.character.findMotion(motion));
+    reach_ = motionReach(
+        footage_.character,
+        footage_.character.source(motion.empty() ? -1 : footage_.character.findMotion(motion)));
     options_.framing = reach_.box();
     if (options_.rig_surface) options_.reach = &reach_;
     options_.ground_height_m = floorHeight(footage_.character, reach_);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -6,17 +5,15 @@
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/parallel.h>
-#include <fascia/fitting/fit_flesh.h>
+#include <fascia/character/flesh_character.h>
 #include <fascia/io/documents/character_file.h>
 #include <fascia/io/file/file.h>
 #include <fascia/io/rig_export/rig_copy.h>
 #include <fascia/io/rig_import/rig_import.h>
-#include <fascia/pose/softness.h>
 
 #include "commands.h"
 #include "console.h"
 #include "example_files.h"
-#include "flesh.h"
 #include "input_kind.h"
 #include "lively_motion.h"
 #include "outputs.h"
@@ -25,26 +22,6 @@
 
 namespace fascia {
 namespace {
-
-// Skin for an imported figure: its pose function. A simulated membrane on top of it is held
-// closely, and evens out what joints fold over a few hundredths of the figure's size.
-SkinDef skinFor(const RiggedModel& model, const SkinPoseDef& dials) {
-  const double size = model.size_m();
-  SkinDef skin;
-  skin.pose = dials;
-  skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
-  if (!dials.simulate) return skin;
-  skin.tissue.stiffness_N_per_m3 = 20000;
-  skin.tissue.damping_Ns_per_m3 = 300;
-  skin.tissue.carry = 0.75;
-  const double evening_m = 0.006 * size;
-  const double stretch =
-      std::clamp(skin.tissue.stiffness_N_per_m3 * evening_m * evening_m, 1e-3, 1e6);
-  skin.material.stretch_u_N_per_m = skin.material.stretch_v_N_per_m = stretch;
-  skin.material.shear_N_per_m = 0.5 * stretch;
-  skin.material.prestretch = 1;
-  return skin;
-}
 
 namespace fs = std::filesystem;
 
@@ -158,47 +135,24 @@ Json reportJson(const RiggedModel& model, const FleshFit& fit) {
                       {"joints", std::move(joints)}};
 }
 
-CharacterDef characterOf(const std::string& name, FleshFit fit, RigDef rig, SkinDef skin) {
-  CharacterDef def;
-  def.name = name;
-  def.skeleton = std::move(fit.skeleton);
-  def.flesh = std::move(fit.flesh);
-  def.rig = std::move(rig);
-  def.skin = std::move(skin);
-  return def;
-}
-
-// What follows a single joint stays as hard as its artist made it: say so, and how to have it else.
-void noteStiffPieces(const RiggedModel& model, std::vector<std::string>& notes) {
-  const std::vector<char> stiff =
-      stiffPieces({model.points_m, model.weights, model.triangles, model.joints});
-  const auto hard = static_cast<std::size_t>(std::count(stiff.begin(), stiff.end(), 1));
-  if (hard == 0) return;
-  notes.push_back(
-      fmt::format("{} of {} points belong to pieces that a single joint carries: they stay hard "
-                  "(\"parts\" with "
-                  "\"rigid\": false makes one soft)",
-                  hard, stiff.size()));
-}
-
 void flesh(const FleshOptions& options, const Console& console) {
   checkFolders({options.output, options.report});
   refuseToOverwrite(options.output, options.force);
   RigFile rig = placeRig(options);
   refuseToOverwrite(rig.copy, options.force);
   const ThreadLimit threads(options.threads);
-  RiggedModel model;
-  withInput(options.input, {.command = "flesh", .model = true},
-            [&] { model = readRiggedModel(options.input, {options.scale}); });
-  FitOptions fitting = options.fit;
-  fitting.muscle = options.dials.muscle;
-  FleshFit fit;
+  std::shared_ptr<const RiggedModel> shared;
+  withInput(options.input, {.command = "flesh", .model = true}, [&] {
+    shared = std::make_shared<const RiggedModel>(readRiggedModel(options.input, {options.scale}));
+  });
+  const RiggedModel& model = *shared;
+  FleshedCharacter made;
   {
     ProgressBar progress(console, "fitting flesh");
     progress.update(0);  // how long it takes is not known
-    fit = fitFlesh(model, fitting);
+    made = fleshCharacter(shared, options.fit, options.dials);
   }
-  noteStiffPieces(model, fit.notes);
+  const FleshFit& fit = made.fit;
   sayTable(fit, console);
   for (const auto& notes : {model.notes, fit.notes}) {
     for (const std::string& note : notes) console.say("note: " + note);
@@ -209,9 +163,9 @@ void flesh(const FleshOptions& options, const Console& console) {
     rig.def.scale = copyRig(model, options.scale, rig.copy);
     console.say("wrote " + rig.copy);
   }
-  writeCharacterFile(
-      characterOf(nameOf(options.output), std::move(fit), rig.def, skinFor(model, options.dials)),
-      options.output);
+  made.def.name = nameOf(options.output);
+  made.def.rig = rig.def;
+  writeCharacterFile(made.def, options.output);
   console.say("wrote " + options.output);
   const std::string character = shellWord(options.output), name = nameOf(options.output);
   console.say(
@@ -267,11 +221,6 @@ void addFlesh(CLI::App& program, Console& console) {
   console.addFlags(command);
   command.footer(kFleshFooter);
   command.callback([options, &console] { flesh(*options, console); });
-}
-
-CharacterDef fleshedCharacter(const std::shared_ptr<const RiggedModel>& model) {
-  return characterOf(model->name, fitFlesh(*model), {.file = model->sourceFile, .model = model},
-                     skinFor(*model, {}));
 }
 
 }  // namespace fascia

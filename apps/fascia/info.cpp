@@ -6,6 +6,7 @@
 #include <fascia/io/cache/scene_cache.h>
 #include <fascia/io/documents/character_file.h>
 #include <fascia/io/documents/scene_file.h>
+#include <fascia/io/motion/motion_file.h>
 #include <fascia/io/rig_import/rig_import.h>
 #include <fascia/math/ode/integrators.h>
 #include <fascia/render/gl_context.h>
@@ -16,7 +17,6 @@
 #include "example_files.h"
 #include "facts.h"
 #include "input_kind.h"
-#include "motion_file.h"
 #include "outputs.h"
 #include "scene_facts.h"
 

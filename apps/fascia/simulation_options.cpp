@@ -12,8 +12,8 @@
 
 #include "input_kind.h"
 #include "interrupt.h"
-#include "motion_file.h"
 #include "progress.h"
+#include "report_map.h"
 
 namespace fascia {
 namespace {

@@ -1,3 +1,4 @@
+#include <fascia/facade/stage_player.h>
 #include <fascia/io/cache/cache.h>
 #include <fascia/io/cache/scene_cache.h>
 #include <fascia/io/documents/stats_writer.h>
@@ -6,7 +7,6 @@
 #include "film.h"
 #include "film_parts.h"
 #include "outputs.h"
-#include "stage_player.h"
 #include "stage_run.h"
 
 namespace fascia {
@@ -40,7 +40,8 @@ class StageFilm final : public Film {
       : scene_(std::move(scene)),
         cache_(std::move(cache)),
         pictures_(scene_.stage),
-        player_(scene_.stage, scene_.recording, scene_.textures, console) {
+        player_(scene_.stage, scene_.recording, scene_.textures, &notes_) {
+    for (const std::string& note : notes_) console.hint(note);
     if (scene_.recording.frames.empty()) throw Error("there are no frames to draw");
     const SceneDef& def = scene_.stage.def();
     options_.layers = parseLayers(look.layers);
@@ -76,7 +77,8 @@ class StageFilm final : public Film {
     const std::size_t step = std::max<std::size_t>(1, frames.size() / kReachMoments);
     for (std::size_t f = 0; f < frames.size(); f += step) pictures_.addTo(frames[f].bodies, reach_);
     for (const SceneCharacterDef& actor : scene_.stage.def().characters) {
-      const Reach own = motionReach(*actor.character, actor.character->findMotion(actor.motion));
+      const Reach own = motionReach(
+          *actor.character, actor.character->source(actor.character->findMotion(actor.motion)));
       for (const Vec3& p : own.extremes()) reach_.add(placeOf(actor).point(p));
     }
   }
@@ -84,6 +86,7 @@ class StageFilm final : public Film {
   SceneCache scene_;
   std::string cache_;
   StagePictures pictures_;
+  std::vector<std::string> notes_;
   StagePlayer player_;
   Reach reach_;
   SceneOptions options_;

@@ -14,7 +14,7 @@
 #include <fascia/render/rig_joints.h>
 #include <fascia/rig/blend_skinning.h>
 
-#include "motion_file.h"
+#include "report_map.h"
 
 namespace fascia {
 namespace {

@@ -51,6 +51,13 @@ TEST(Architecture, RefusesAnArrowThatPointsInward) {
   EXPECT_EQ(found[0], "field/a.h:2: includes <fascia/skin/skin.h>, but field may not use skin");
 }
 
+TEST(Architecture, RefusesTheFacadeBehindItself) {
+  const std::string facade = "#include <fascia/fascia.h>\n";
+  EXPECT_EQ(violationsOf("io/a.cpp", facade).size(), 1u);
+  EXPECT_TRUE(violationsOf("facade/a.cpp", facade).empty());
+  EXPECT_TRUE(violationsOf("fascia.h", "#include <fascia/io/a.h>\n").empty());
+}
+
 TEST(Architecture, RefusesAnArrowBetweenFoldersThatPointsInward) {
   const std::string solver = "#include <fascia/deformable/solve/body_system.h>\n";
   const auto found = violationsOf("deformable/body/a.h", solver);

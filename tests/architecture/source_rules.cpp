@@ -43,9 +43,9 @@ const std::vector<Rule>& rules() {
   return all;
 }
 
-// "io" of io/json/json.h
+// "io" of io/json/json.h; a header in no folder, fascia.h, is the outermost module's.
 std::string moduleOf(const fs::path& file) {
-  return file.begin()->string();
+  return file.has_parent_path() ? file.begin()->string() : "facade";
 }
 
 // "io/json" of io/json/json.h
@@ -85,7 +85,7 @@ class Checker {
   }
 
   void checkArrow(const fs::path& from, const std::string& place, const std::string& line) {
-    static const std::regex include(R"(^\s*#\s*include\s*[<"](fascia/(\w+/[^>"]+)))");
+    static const std::regex include(R"(^\s*#\s*include\s*[<"](fascia/([\w/]+\.h)))");
     std::smatch match;
     if (!std::regex_search(line, match, include)) return;
     const fs::path to = match[2].str();

@@ -163,6 +163,23 @@ SceneDef withDoll() {
   return def;
 }
 
+TEST(Performance, MovesACharacterByAnySource) {
+  const Stage stage(withDoll());
+  const Character& doll = *stage.def().characters[0].character;
+  Performance performance(stage);
+  const ClipSource waving = doll.source(0);
+  performance.setSource(0, &waving);
+  run(performance, 0.4);
+  PostureSample wanted;
+  waving.sample(performance.time_s(), wanted);
+  const std::vector<double> rest = doll.skeleton().restPosture().values;
+  ASSERT_NE(wanted.posture.values, rest);
+  EXPECT_EQ(performance.character(0).posture.values, wanted.posture.values);
+  performance.setSource(0, nullptr);
+  run(performance, 0.1);
+  EXPECT_EQ(performance.character(0).posture.values, rest);
+}
+
 TEST(Performance, BodiesLandOnCharactersWhereTheseArePlaced) {
   SceneDef def = withDoll();
   const double top = 1 + 0.5 + 0.15 + 0.15;  // hip, spine and neck, the head's centre and radius

@@ -154,7 +154,8 @@ class Comparison {
   Setting makeSetting() const {
     const Character& character = subject_.character;
     const std::string& motion = subject_.recording.motion;
-    const Reach reach = motionReach(character, motion.empty() ? -1 : character.findMotion(motion));
+    const Reach reach = motionReach(
+        character, character.source(motion.empty() ? -1 : character.findMotion(motion)));
     return {rigSurface(character, console_), reach.box(), floorHeight(character, reach)};
   }
 

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include <fascia/character/recording.h>
+#include <fascia/render/player.h>
 #include <fascia/render/rig_joints.h>
 #include <fascia/rig/blend_skinning.h>
-
-#include "player.h"
 
 namespace fascia {
 

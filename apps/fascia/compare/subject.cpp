@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <fascia/character/flesh_character.h>
 #include <fascia/io/cache/cache.h>
 #include <fascia/io/cache/scene_cache.h>
 #include <fascia/io/documents/character_file.h>
@@ -9,7 +10,6 @@
 #include <fascia/io/rig_import/rig_import.h>
 
 #include "film_parts.h"
-#include "flesh.h"
 #include "input_kind.h"
 #include "outputs.h"
 #include "progress.h"
@@ -46,7 +46,7 @@ CharacterFile readSubject(const std::string& input, const Console& console) {
   for (const std::string& note : model->notes) console.detail("note: " + note);
   ProgressBar progress(console, "fitting flesh");
   progress.update(0);  // how long it takes is not known
-  file.def = fleshedCharacter(model);
+  file.def = fleshCharacter(model).def;
   return file;
 }
 

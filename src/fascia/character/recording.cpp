@@ -26,7 +26,8 @@ void keepFrame(const Character& character, const CharacterState& state, bool kep
                 out.stats);
   }
   if (!kept) return;
-  out.frames.push_back({state.time_s, state.posture.values, out.skin.positions, {}});
+  out.frames.push_back(
+      {state.time_s, state.posture.values, out.skin.positions, {}, state.sampled.parameters});
   if (const auto& soft = character.softFlesh())
     out.frames.back().soft_shapes = soft->shapes(state.bodies);
 }

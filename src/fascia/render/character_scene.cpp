@@ -16,10 +16,6 @@ constexpr float kVeilOpacity = 0.24f;          // of skin that shows the layers 
 constexpr std::size_t kSkinTriangles = 5'000;  // fewer: corners show in the outline
 constexpr float kTendonAspect = 1.25f;         // rounder solids are drawn without tendons
 
-bool hasRig(const Character& character) {
-  return character.def().rig && character.def().rig->model;
-}
-
 bool isVeil(const Layers& layers) {
   return layers.skeleton || layers.muscle;
 }
@@ -166,6 +162,10 @@ void addBones(const Character& character, const CharacterState& state, bool insi
 }
 
 }  // namespace
+
+bool hasRig(const Character& character) {
+  return character.def().rig && character.def().rig->model;
+}
 
 Layers parseLayers(std::string_view text) {
   Layers layers{false, false, false};

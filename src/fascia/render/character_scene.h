@@ -30,6 +30,9 @@ struct SceneOptions {
   int muscle_detail = 40;    // … of muscles, whose fibres follow the facets
 };
 
+// Whether the skin is an imported mesh.
+bool hasRig(const Character& character);
+
 // The picture of a character at one moment. `skin` is its surface in that state (skinSurface, or a
 // recording's frame); it may be empty. Only skeleton, flesh and ornaments of the state are read, so
 // a state whose skin was played from a file does as well. The surface of an imported character is

@@ -9,8 +9,8 @@
 #include <fascia/io/rig_import/rig_file.h>
 #include <fascia/io/rig_import/rig_import.h>
 
-#include "motion_file.h"
 #include "outputs.h"
+#include "report_map.h"
 
 namespace fascia {
 namespace {

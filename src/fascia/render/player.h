@@ -17,7 +17,7 @@ namespace fascia {
 std::size_t closestFrame(std::span<const double> times_s, double frameRate_hz, double time_s);
 
 // Shows a recording again: the character's layers and its skin at any recorded moment, without
-// simulating. Both must outlive it.
+// simulating, whatever moved it. Both must outlive it.
 class Player {
  public:
   Player(const Character& character, const Recording& recording);
@@ -32,7 +32,7 @@ class Player {
   const Character& character_;
   const Recording& recording_;
   std::vector<double> times_s_;  // of the frames
-  int motion_;
+  ClipSource motion_;            // what was recorded, for its parameters; rest if it is none
   CharacterState state_;
   TriangleMesh skin_;
   WeldedNormals normals_;
@@ -41,10 +41,10 @@ class Player {
   std::optional<BlendedSkin> blended_;
 };
 
-// Everything that flesh, ornaments and an imported surface reach in the course of a motion (-1: the
-// rest posture). It does not depend on what part of it is simulated: a camera that frames it shows
-// a picture, a video and a cache from the same place.
-Reach motionReach(const Character& character, int motion);
+// Everything that flesh, ornaments and an imported surface reach while a source moves them; one
+// without an end counts at time 0 only. It does not depend on what part of it is simulated: a
+// camera that frames it shows a picture, a video and a cache from the same place.
+Reach motionReach(const Character& character, const PostureSource& source);
 
 // Where the floor belongs: at 0, or below what stands or moves deeper, or under an imported
 // character whose file has its feet elsewhere.

@@ -8,11 +8,9 @@
 #include <fascia/rig/motion_figure.h>
 #include <fascia/rig/rigged_model.h>
 
-#include "console.h"
-
 namespace fascia {
 
-// Whether a --motion names a motion capture file instead of a motion: by its ending.
+// Whether a text names a motion capture file instead of a motion: by its ending.
 bool isMotionFile(std::string_view motion);
 
 // A motion capture file, and how its joints drive a rig's.
@@ -29,8 +27,5 @@ MotionFile readMotionFile(const std::string& path, const RiggedModel& rig,
 
 // The motion on the rig, under a name that the rig does not have yet. Adds to the notes.
 SampledMotion ontoRig(MotionFile& file, const RiggedModel& rig);
-
-// A line about the map for a person; every pair and note with --verbose.
-void reportMap(const MotionFile& file, const RiggedModel& rig, const Console& console);
 
 }  // namespace fascia

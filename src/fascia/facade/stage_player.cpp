@@ -1,18 +1,16 @@
-#include "stage_player.h"
-
-#include "film_parts.h"
+#include <fascia/facade/stage_player.h>
 
 namespace fascia {
 
 StagePlayer::StagePlayer(const Stage& stage, const StageRecording& recording,
-                         const std::vector<Texture>& textures, const Console& console)
+                         const std::vector<Texture>& textures, std::vector<std::string>* notes)
     : recording_(recording) {
   for (const StageRecording::Frame& frame : recording.frames) times_s_.push_back(frame.time_s);
   for (std::size_t i = 0; i < recording.characters.size(); ++i) {
     const Character& character = *stage.def().characters[i].character;
     players_.push_back(std::make_unique<Player>(character, recording.characters[i]));
     moment_.actors.push_back({&players_.back()->state(), &players_.back()->skin(),
-                              toPixels(textures[i]), rigSurface(character, console)});
+                              toPixels(textures[i]), rigSurface(character, notes)});
   }
 }
 

@@ -1,10 +1,9 @@
-#include "player.h"
+#include <fascia/render/player.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/core.h>
-
+#include <fascia/base/suggest.h>
 #include <fascia/render/character_scene.h>
 
 namespace fascia {
@@ -15,9 +14,22 @@ constexpr int kReachSamples =
 
 constexpr double kOffTheFloor = 0.04;  // of the height: feet farther from 0 have a floor elsewhere
 
-bool hasRig(const Character& character) {
-  return character.def().rig && character.def().rig->model;
-}
+// A recorded frame, standing still.
+class FramePosture final : public PostureSource {
+ public:
+  FramePosture(const Recording::Frame& frame, const ClipSource& motion)
+      : frame_(frame), motion_(motion) {}
+  void sample(double, PostureSample& out) const override {
+    motion_.sample(frame_.time_s, out);
+    out.posture.values = frame_.posture;
+    out.posture.rates.assign(out.posture.values.size(), 0.0);
+    if (!frame_.parameters.empty()) out.parameters = frame_.parameters;
+  }
+
+ private:
+  const Recording::Frame& frame_;
+  const ClipSource& motion_;
+};
 
 }  // namespace
 
@@ -25,8 +37,8 @@ std::size_t closestFrame(std::span<const double> times_s, double frameRate_hz, d
   if (times_s.empty()) throw Error("there are no frames to draw");
   const double halfFrame_s = 0.5 / frameRate_hz;
   if (time_s < times_s.front() - halfFrame_s || time_s > times_s.back() + halfFrame_s)
-    throw Error(fmt::format("there is no frame at {} s: they go from {:g} s to {:g} s", time_s,
-                            times_s.front(), times_s.back()));
+    throw Error("there is no frame at " + shortNumber(time_s) + " s: they go from " +
+                shortNumber(times_s.front()) + " s to " + shortNumber(times_s.back()) + " s");
   const auto closest = std::ranges::min_element(
       times_s, {}, [time_s](double frame_s) { return std::abs(frame_s - time_s); });
   return static_cast<std::size_t>(closest - times_s.begin());
@@ -35,7 +47,8 @@ std::size_t closestFrame(std::span<const double> times_s, double frameRate_hz, d
 Player::Player(const Character& character, const Recording& recording)
     : character_(character),
       recording_(recording),
-      motion_(recording.motion.empty() ? -1 : character.findMotion(recording.motion)),
+      motion_(
+          character.source(recording.motion.empty() ? -1 : character.findMotion(recording.motion))),
       skin_(recording.skin),
       normals_(recording.skin) {
   for (const Recording::Frame& frame : recording.frames) times_s_.push_back(frame.time_s);
@@ -53,7 +66,7 @@ void Player::seek(double time_s) {
       throw Error("the recording's soft solids are not those of the character");
     soft->setShapes(frame.soft_shapes, frame.time_s, state_.bodies);
   }
-  poseLayers(character_, character_.source(motion_), false, state_);
+  poseLayers(character_, FramePosture(frame, motion_), false, state_);
   skin_.positions = frame.skin_m;
   if (creases_) {
     if (frame.skin_m.empty()) blended_->compute(state_, skin_.positions);
@@ -63,9 +76,8 @@ void Player::seek(double time_s) {
   normals_.compute(skin_.positions, skin_.normals);
 }
 
-Reach motionReach(const Character& character, int motion) {
-  const double duration_s =
-      motion < 0 ? 0 : character.motion(static_cast<std::size_t>(motion)).duration_s;
+Reach motionReach(const Character& character, const PostureSource& source) {
+  const double duration_s = source.info().duration_s;
   std::optional<BlendedSkin> blended;
   if (hasRig(character)) blended.emplace(character);
   CharacterState state;
@@ -73,7 +85,7 @@ Reach motionReach(const Character& character, int motion) {
   Reach reach;
   for (int i = 0; i <= kReachSamples; ++i) {
     state.time_s = duration_s * i / kReachSamples;
-    poseLayers(character, character.source(motion), false, state);
+    poseLayers(character, source, false, state);
     if (blended) {
       blended->compute(state, surface);
       for (const Eigen::Vector3f& p : surface) reach.add(p.cast<double>());

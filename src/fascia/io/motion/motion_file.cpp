@@ -1,9 +1,8 @@
-#include "motion_file.h"
+#include <fascia/io/motion/motion_file.h>
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
+#include <fascia/io/file/file.h>
 #include <fascia/io/motion/bvh.h>
 #include <fascia/io/motion/joint_map_file.h>
 #include <fascia/rig/retarget.h>
@@ -42,16 +41,6 @@ SampledMotion ontoRig(MotionFile& file, const RiggedModel& rig) {
   const auto taken = [&](const SampledMotion& m) { return m.name == motion.name; };
   while (std::any_of(rig.motions.begin(), rig.motions.end(), taken)) motion.name += " (mapped)";
   return motion;
-}
-
-void reportMap(const MotionFile& file, const RiggedModel& rig, const Console& console) {
-  const auto driven = std::count_if(file.map.begin(), file.map.end(), [](const JointPair& pair) {
-    return !pair.source.empty() && !pair.target.empty();
-  });
-  console.say(fmt::format("{}: {} joints in {}; drives {} of the rig's {}", file.figure.motion.name,
-                          file.figure.joints.size(), file.unit, driven, rig.joints.size()));
-  console.detail(printJointMap(file.map));
-  for (const std::string& note : file.notes) console.detail(note);
 }
 
 }  // namespace fascia

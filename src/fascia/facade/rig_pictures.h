@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fascia/character/character.h>
+#include <fascia/io/picture/texture.h>
+#include <fascia/render/rig_surface.h>
+
+namespace fascia {
+
+// A picture made ready for drawing; null if there is none. Throws Error if it cannot be read.
+std::shared_ptr<const Pixels> toPixels(const Texture& texture);
+
+// The decoded pictures of an imported character's materials; null if it has no rig. One that cannot
+// be read is left out, and noted: the rest of the character is still worth seeing.
+std::shared_ptr<const RigSurface> rigSurface(const Character& character,
+                                             std::vector<std::string>* notes = nullptr);
+
+}  // namespace fascia
