@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "stage_run.h"
 
 namespace fascia {
 namespace {
@@ -21,7 +22,7 @@ Examples:
   fascia check --json mine.fascia.json yours.fascia.json)";
 
 // Builds what the file holds; a scene is started too: its script is read then.
-void checkFile(const std::string& path) {
+void checkFile(const std::string& path, const Console& console) {
   if (!isSceneFile(path)) {
     loadCharacter(path);
     return;
@@ -29,13 +30,14 @@ void checkFile(const std::string& path) {
   const Stage stage = loadStage(path);
   if (!stage.def().view.camera.empty()) parseCamera(stage.def().view.camera);
   const Performance performance(stage);
+  reportTroubles(stage, performance.troubles(), console);
 }
 
 void check(const std::vector<std::string>& paths, const Console& console) {
   std::vector<Issue> issues;
   for (const std::string& path : paths) {
     try {
-      checkFile(path);
+      checkFile(path, console);
       console.say(path + ": ok");
     } catch (const Error& error) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());

@@ -82,6 +82,7 @@ SceneFile readSceneFile(const std::string& path, const BuildOptions& options) {
 
 Stage loadStage(const std::string& path, const BuildOptions& options) {
   SceneFile file = readSceneFile(path, options);
+  if (options.step_s > 0) file.def.simulation.step_s = options.step_s;
   try {
     return Stage(std::move(file.def));
   } catch (const Error& error) {
