@@ -14,6 +14,7 @@
 #include "input_kind.h"
 #include "lively_motion.h"
 #include "shell_word.h"
+#include "stage_run.h"
 
 namespace fascia {
 namespace {
@@ -40,7 +41,7 @@ struct Checked {
 };
 
 // Builds what the file holds; a scene is started too: its script is read then.
-Checked checkFile(const std::string& path) {
+Checked checkFile(const std::string& path, const Console& console) {
   if (!isSceneFile(path)) {
     const Character character = loadCharacter(path);
     const std::string motion = livelyMotion(character);
@@ -49,6 +50,7 @@ Checked checkFile(const std::string& path) {
   const Stage stage = loadStage(path);
   if (!stage.def().view.camera.empty()) parseCamera(stage.def().view.camera);
   const Performance performance(stage);
+  reportTroubles(stage, performance.troubles(), console);
   return {stage.warnings(), renderCommand(path, {}, true)};
 }
 
@@ -63,7 +65,7 @@ void check(const std::vector<std::string>& paths, const Console& console) {
     try {
       Checked checked;
       withInput(path, {.command = "check", .character = true, .scene = true},
-                [&] { checked = checkFile(path); });
+                [&] { checked = checkFile(path, console); });
       console.warn(checked.warnings);
       console.say(path + ": " + verdict(checked.warnings.size()));
       next = checked.next;

@@ -167,7 +167,7 @@ void describeFile(const InfoOptions& options, Facts& facts) {
   if (isSceneCache(bytes)) {
     const SceneCache cache = parseSceneCache(bytes, options.file);
     addScene(cache.stage, facts);
-    return addPerformance(cache.recording, facts);
+    return addPerformance(cache.stage, cache.recording, facts);
   }
   const Cache cache = parseCache(bytes, options.file);
   addCharacter(Character(cache.def), facts);

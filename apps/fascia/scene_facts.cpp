@@ -69,13 +69,22 @@ void addScene(const Stage& stage, Facts& facts) {
   facts.add("frame_rate_hz", def.simulation.frame_rate_hz);
 }
 
-void addPerformance(const StageRecording& recording, Facts& facts) {
+void addPerformance(const Stage& stage, const StageRecording& recording, Facts& facts) {
   constexpr const char* kOutcomes[] = {"none", "succeeded", "failed"};
   facts.add("frames", count(recording.frames.size()));
   facts.add("recorded_hz", recording.frame_rate_hz);
   facts.add("simulated_s", recording.simulated_s);
   facts.add("outcome", std::string(kOutcomes[static_cast<std::size_t>(recording.outcome)]));
   if (!recording.reason.empty()) facts.add("reason", recording.reason);
+  std::vector<std::string> troubles;
+  Json::List texts;
+  for (const BodyTrouble& trouble : recording.troubles) {
+    troubles.push_back(textOf(stage, trouble));
+    texts.push_back(troubles.back());
+  }
+  const bool sound = !anyFault(recording.troubles);
+  facts.add("sound", sound, std::string(sound ? "yes" : "no"));
+  facts.add("troubles", std::move(texts), troubles);
   facts.add("state_hash", fmt::format("{:016x}", recording.state_hash));
 }
 

@@ -1,5 +1,7 @@
 #include "stage_run.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 
 #include <fascia/io/documents/scene_file.h>
@@ -36,6 +38,15 @@ StageRecording perform(const Stage& stage, StageRecordOptions options, const Con
   return record(stage, options);
 }
 
+void reportTroubles(const Stage& stage, std::span<const BodyTrouble> troubles,
+                    const Console& console) {
+  constexpr std::size_t kMostLines = 12;
+  for (std::size_t i = 0; i < std::min(kMostLines, troubles.size()); ++i)
+    console.hint(textOf(stage, troubles[i]));
+  if (troubles.size() > kMostLines)
+    console.hint(fmt::format("… and {} more: --stats has all of it", troubles.size() - kMostLines));
+}
+
 void reportPerformance(const Stage& stage, const StageRecording& recording,
                        const std::vector<std::string>& outputs, const Console& console,
                        const std::string& cache) {
@@ -48,7 +59,13 @@ void reportPerformance(const Stage& stage, const StageRecording& recording,
                     : "read from cache " + cache;
   console.say(fmt::format("{} frames, {} bodies: {}", recording.frames.size(),
                           stage.bodies().bodyCount(), origin));
-  if (recording.outcome == ScriptOutcome::succeeded) console.say("the script has succeeded");
+  reportTroubles(stage, recording.troubles, console);
+  if (recording.outcome == ScriptOutcome::succeeded) {
+    if (anyFault(recording.troubles))
+      console.hint("the script says that it has succeeded, with bodies that were not sound");
+    else
+      console.say("the script has succeeded");
+  }
   if (recording.outcome == ScriptOutcome::failed)
     console.hint("the script has failed" +
                  (recording.reason.empty() ? std::string() : ": " + recording.reason));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ StageRecordOptions stageRecordOptions(const SimulationOptions& options);
 // Performs with a progress bar. Throws Interrupted on Ctrl-C.
 StageRecording perform(const Stage& stage, StageRecordOptions options, const Console& console);
 
+// A line for each, up to a dozen.
+void reportTroubles(const Stage& stage, std::span<const BodyTrouble> troubles,
+                    const Console& console);
 // A few lines about a performance for a person, the whole statistics for a machine. cache: the file
 // that it was read from, if it did not happen now.
 void reportPerformance(const Stage& stage, const StageRecording& recording,

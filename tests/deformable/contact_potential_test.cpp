@@ -7,17 +7,17 @@
 namespace fascia {
 namespace {
 
-TEST(GapEnergy, ForceAndCurvatureAreItsDerivatives) {
-  const GapEnergy energy{2e-3, 5e4};
+TEST(LogBarrier, ForceAndCurvatureAreItsDerivatives) {
+  const LogBarrier energy{2e-3, 5e4};
   for (const double part : {-3.0, -0.2, 0.03, 0.0624, 0.0626, 0.2, 0.7, 0.99, 1.01, 5.0}) {
-    const double d = part * energy.margin_m, h = 1e-5 * energy.margin_m;
-    const double slope = (energy.value_J(d + h) - energy.value_J(d - h)) / (2 * h);
-    EXPECT_NEAR(energy.force_N(d), -slope, 1e-6 * (std::abs(slope) + 1)) << part;
-    const double rise = (energy.force_N(d + h) - energy.force_N(d - h)) / (2 * h);
-    EXPECT_NEAR(energy.curvature_N_per_m(d), -rise, 1e-4 * (std::abs(rise) + 1)) << part;
+    const double d = part * energy.margin, h = 1e-5 * energy.margin;
+    const double slope = (energy.value(d + h) - energy.value(d - h)) / (2 * h);
+    EXPECT_NEAR(energy.force(d), -slope, 1e-6 * (std::abs(slope) + 1)) << part;
+    const double rise = (energy.force(d + h) - energy.force(d - h)) / (2 * h);
+    EXPECT_NEAR(energy.curvature(d), -rise, 1e-4 * (std::abs(rise) + 1)) << part;
   }
-  EXPECT_EQ(energy.force_N(energy.margin_m), 0);
-  EXPECT_GT(energy.force_N(0), 30 * energy.stiffness_N_per_m * energy.margin_m);
+  EXPECT_EQ(energy.force(energy.margin), 0);
+  EXPECT_GT(energy.force(0), 30 * energy.stiffness * energy.margin);
 }
 
 TEST(SlideEnergy, SlopeAndCurvatureAreItsDerivatives) {

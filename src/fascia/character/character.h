@@ -111,7 +111,7 @@ void poseLayers(const Character& character, const PostureSource& source, bool mo
                 CharacterState& state);
 
 // What stands or moves about a character, in its own space, while it is advanced: its skin must not
-// enter it. Skins whose points feel solids of their own only, those on rigs, do not feel it.
+// enter it. Skins on rigs are dented by it.
 class Surroundings {
  public:
   virtual ~Surroundings() = default;

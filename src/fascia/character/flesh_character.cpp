@@ -13,6 +13,7 @@ SkinDef skinFor(const RiggedModel& model, const SkinPoseDef& dials) {
   const double size = model.size_m();
   SkinDef skin;
   skin.pose = dials;
+  skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
   if (!dials.simulate) return skin;
   skin.tissue.stiffness_N_per_m3 = 20000;
   skin.tissue.damping_Ns_per_m3 = 300;
@@ -23,7 +24,6 @@ SkinDef skinFor(const RiggedModel& model, const SkinPoseDef& dials) {
   skin.material.stretch_u_N_per_m = skin.material.stretch_v_N_per_m = stretch;
   skin.material.shear_N_per_m = 0.5 * stretch;
   skin.material.prestretch = 1;
-  skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
   return skin;
 }
 

@@ -6,8 +6,10 @@
 #include <fascia/base/hash.h>
 #include <fascia/deformable/contact/body_contact.h>
 #include <fascia/deformable/solve/body_stepper.h>
+#include <fascia/math/nearest_rotation.h>
 #include <fascia/world/joint_place.h>
 #include <fascia/world/placed_field.h>
+#include <fascia/world/skin_obstacle.h>
 #include <fascia/world/stage_surroundings.h>
 
 namespace fascia {
@@ -16,6 +18,8 @@ namespace {
 // What bodies of a scene correct each other to, relative to their sizes: far below what is seen.
 constexpr double kTolerance = 1e-8;
 constexpr int kMostIterations = 40;
+// Of what is between a character's skin and its solids: fat and slack muscle.
+constexpr double kFleshModulus_Pa = 2e4;
 
 BodyStepperOptions stepperOptions(const SceneSimulationDef& def) {
   BodyStepperOptions options;
@@ -60,6 +64,7 @@ struct Performance::Actor {
   CharacterState state;
   CharacterState ahead;  // its flesh as bodies meet it, step by step
   std::unique_ptr<PlacedField> field;
+  std::unique_ptr<SkinObstacle> skin;  // likewise; nullptr: it has none, or nobody meets it
   std::unique_ptr<StageSurroundings> surroundings;  // as its skin meets bodies and props
   SkinStats stats;
 };
@@ -77,6 +82,7 @@ Performance::Performance(const Stage& stage, std::uint64_t seed)
   addPaths();
   if (!def.script_text.empty())
     script_ = std::make_unique<Script>(def.script_text, def.script, seed);
+  lookForTroubles();
 }
 
 Performance::~Performance() = default;
@@ -110,9 +116,18 @@ void Performance::addContacts() {
   for (std::size_t b = 0; b < def.bodies.size(); ++b)
     if (def.bodies[b].collides)
       contacts.setSurface(BodyId(b), stage_.surface(BodyId(b)), def.bodies[b].friction);
-  for (std::size_t i = 0; i < def.props.size(); ++i)
+  for (std::size_t i = 0; i < def.props.size(); ++i) {
     contacts.addObstacle(stage_.prop(i), def.props[i].friction);
-  for (const auto& actor : actors_) contacts.addObstacle(*actor->field, actor->def->friction);
+    obstacles_.push_back(def.props[i].name);
+  }
+  for (const auto& actor : actors_) {
+    contacts.addObstacle(*actor->field, actor->def->friction);
+    obstacles_.push_back(actor->def->name);
+    if (!actor->def->character->skin() || def.bodies.empty()) continue;
+    actor->skin = std::make_unique<SkinObstacle>(*actor->def, actor->ahead);
+    contacts.addPadding(actor->skin->field(), kFleshModulus_Pa, actor->def->friction);
+    obstacles_.push_back(actor->def->name);
+  }
 }
 
 // Points of bodies, places, and the joints of characters.
@@ -147,11 +162,17 @@ void Performance::advance(double dt_s) {
   const std::size_t steps = stage_.stepsPerFrame(1 / dt_s);
   const double start_s = state_.t_s;
   if (!actors_.empty()) before_ = state_;
+  for (const auto& actor : actors_) {
+    if (!actor->skin) continue;
+    poseAhead(*actor, start_s + dt_s);
+    actor->skin->setFrame(start_s, start_s + dt_s, actor->ahead);
+  }
   for (std::size_t i = 0; i < steps; ++i) {
     const double end_s = start_s + dt_s * static_cast<double>(i + 1) / static_cast<double>(steps);
     step(end_s - state_.t_s);
     state_.t_s = end_s;
   }
+  lookForTroubles();
   for (const auto& actor : actors_) {
     actor->surroundings->setFrame(before_, state_);
     fascia::advance(*actor->def->character, actor->role, dt_s, actor->state, actor->stats,
@@ -159,15 +180,55 @@ void Performance::advance(double dt_s) {
   }
 }
 
+void Performance::poseAhead(Actor& actor, double time_s) {
+  actor.ahead.time_s = time_s;
+  poseLayers(*actor.def->character, actor.role, true, actor.ahead);
+}
+
 void Performance::step(double h_s) {
   FASCIA_ASSERT(h_s > 0, "time goes on");
   if (script_) script_->update(*puppet_, h_s);
   puppet_->update(h_s);
   for (const auto& actor : actors_) {
-    actor->ahead.time_s = state_.t_s + h_s;
-    poseLayers(*actor->def->character, actor->role, true, actor->ahead);
+    poseAhead(*actor, state_.t_s + h_s);
+    if (actor->skin) actor->skin->moveTo(state_.t_s + h_s);
   }
   stepper_->step(h_s, state_);
+}
+
+void Performance::lookForTroubles() {
+  for (const Puppet::LetGo& letGo : puppet_->letGos().subspan(letGos_))
+    troubles_.noteLetGo(letGo.time_s, puppet_->bodyPoint(letGo.point).body,
+                        stage_.body(letGo.squeezed).name);
+  letGos_ = puppet_->letGos().size();
+  troubles_.look(stage_, state_, system_.contacts(), obstacles_);
+  restoreCollapsed();
+}
+
+// What has no volume left has no force left that could give it back: after a moment it starts anew,
+// undeformed, with the momentum that it has.
+void Performance::restoreCollapsed() {
+  constexpr double kCollapsed = 0.02;  // of its volume
+  constexpr int kMoment = 6;           // frames
+  const BodyModel& model = stage_.bodies();
+  collapsedFrames_.resize(model.bodyCount(), 0);
+  for (std::size_t b = 0; b < model.bodyCount(); ++b) {
+    const BodyId id(b);
+    const BodyShape& shape = model.shape(id);
+    const auto q = model.part(id, std::span<const double>(state_.r));
+    int& frames = collapsedFrames_[b];
+    frames = shape.meanGrowth(q) < kCollapsed ? frames + 1 : 0;
+    if (frames < kMoment) continue;
+    frames = 0;
+    const Vec3 center = shape.point(q, shape.center_m());
+    const Vec3 velocity =
+        shape.point(model.part(id, std::span<const double>(state_.v)), shape.center_m());
+    const Mat3 turn = nearestRotation(shape.deformationGradient(q, shape.center_m()));
+    model.place(id, {turn, center - turn * shape.center_m()}, state_);
+    shape.setRigidVelocity(q, {velocity, Vec3::Zero(), center},
+                           model.part(id, std::span<double>(state_.v)));
+    troubles_.noteRestored(state_.t_s, id);
+  }
 }
 
 void Performance::setSource(std::size_t i, const PostureSource* source) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <fascia/deformable/solve/body_system.h>
 #include <fascia/world/script.h>
 #include <fascia/world/stage.h>
+#include <fascia/world/trouble.h>
 
 namespace fascia {
 
@@ -39,6 +41,8 @@ class Performance {
   const BodyStepperStats& bodyStats() const { return stepper_->stats(); }
   // Strings to pull while it runs, by a hand or a program.
   Puppet& puppet() { return *puppet_; }
+  // What was wrong with bodies at the start and the ends of frames, and which controls let go.
+  std::span<const BodyTrouble> troubles() const { return troubles_.troubles(); }
   const Script* script() const { return script_.get(); }  // nullptr: the scene has none
   std::uint64_t hash() const;                             // over time, bodies and characters
 
@@ -51,6 +55,9 @@ class Performance {
   void addContacts();
   void addPaths();
   void step(double h_s);
+  static void poseAhead(Actor& actor, double time_s);
+  void lookForTroubles();
+  void restoreCollapsed();
 
   const Stage& stage_;
   OdeState state_;
@@ -60,6 +67,10 @@ class Performance {
   std::unique_ptr<Puppet> puppet_;
   std::unique_ptr<Script> script_;
   std::vector<std::unique_ptr<Actor>> actors_;
+  std::vector<std::string> obstacles_;  // names of props and characters, as bodies meet them
+  TroubleLog troubles_;
+  std::vector<int> collapsedFrames_;  // per body: for how long it has had no volume
+  std::size_t letGos_ = 0;            // of the puppet, that are among the troubles
 };
 
 }  // namespace fascia

@@ -38,6 +38,7 @@ StageRecording record(const Stage& stage, const StageRecordOptions& options) {
     finishRecording(*stage.def().characters[i].character, performance.character(i),
                     out.characters[i]);
   out.bodies = performance.bodyStats();
+  out.troubles.assign(performance.troubles().begin(), performance.troubles().end());
   if (const Script* script = performance.script()) {
     out.outcome = script->outcome();
     out.reason = script->reason();

@@ -23,6 +23,7 @@ struct StageRecording {
   ScriptOutcome outcome = ScriptOutcome::none;  // what the script says about it
   std::string reason;                           // of a failure
   std::vector<ScriptLogLine> log;
+  std::vector<BodyTrouble> troubles;  // see Performance; of all frames, also those not kept
   double wall_s = 0, simulated_s = 0;
   std::uint64_t state_hash = 0;  // of the end
 };

@@ -58,6 +58,11 @@ class BodyShape {
   Vec3 point(std::span<const double> q, const Vec3& X) const;
   Mat3 deformationGradient(std::span<const double> q, const Vec3& X) const;  // ∂x/∂X
 
+  // How much of the volume is left, det F, at worst among the energy's points and on average. 1 at
+  // rest; not positive where the body is flat or inside out.
+  double leastGrowth(std::span<const double> q) const;
+  double meanGrowth(std::span<const double> q) const;
+
   // Elastic energy V(q) = Σ volume ψ(F), J.
   double energy(std::span<const double> q) const;
   // force −= ∂V/∂q.

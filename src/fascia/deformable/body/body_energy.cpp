@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include <fascia/deformable/body/body.h>
 
@@ -64,6 +65,26 @@ Mat3 deformationAt(const double* q, const double* slopes, int shapeCount) {
 }
 
 }  // namespace
+
+double BodyShape::leastGrowth(std::span<const double> q) const {
+  return withDimension(dimension_, [&](auto d) {
+    double least = volumes_.empty() ? 1 : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < volumes_.size(); ++i)
+      least = std::min(least, deformationAt<d()>(q.data(), slopes(i), shapeCount_).determinant());
+    return least;
+  });
+}
+
+double BodyShape::meanGrowth(std::span<const double> q) const {
+  return withDimension(dimension_, [&](auto d) {
+    double sum = 0, whole = 0;
+    for (std::size_t i = 0; i < volumes_.size(); ++i) {
+      sum += volumes_[i] * deformationAt<d()>(q.data(), slopes(i), shapeCount_).determinant();
+      whole += volumes_[i];
+    }
+    return whole > 0 ? sum / whole : 1;
+  });
+}
 
 double BodyShape::energy(std::span<const double> q) const {
   FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()),

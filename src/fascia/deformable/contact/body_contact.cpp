@@ -63,6 +63,15 @@ ObstacleId BodyContacts::addObstacle(const Field& field, std::optional<double> f
   return obstacles_.back().id;
 }
 
+ObstacleId BodyContacts::addPadding(const SurfaceField& surface, double modulus_Pa,
+                                    std::optional<double> friction) {
+  checkRange("contacts", "modulus_Pa", modulus_Pa, 1, 1e12);
+  const ObstacleId id = addObstacle(surface, friction);
+  obstacles_.back().padding = &surface;
+  obstacles_.back().modulus_Pa = modulus_Pa;
+  return id;
+}
+
 void BodyContacts::removeObstacle(ObstacleId obstacle) {
   std::erase_if(obstacles_, [&](const Obstacle& o) { return o.id == obstacle; });
 }

@@ -9,6 +9,7 @@
 #include <fascia/deformable/body/body_field.h>
 #include <fascia/deformable/contact/contact_points.h>
 #include <fascia/deformable/contact/contact_set.h>
+#include <fascia/field/surface_field.h>
 
 namespace fascia {
 
@@ -51,10 +52,25 @@ class BodyContacts {
   // Solids whose place is that of the end of the next step, and whose velocity took them there.
   // They may be posed anew between steps and must stay where they are in memory until removed.
   ObstacleId addObstacle(const Field& field, std::optional<double> friction = {});
+  // A surface below which matter gives way as far as `surface` says, as a layer of `modulus_Pa` on
+  // something hard: contacts begin at the surface, and harden towards the bottom of the layer.
+  ObstacleId addPadding(const SurfaceField& surface, double modulus_Pa,
+                        std::optional<double> friction = {});
   void removeObstacle(ObstacleId obstacle);
 
   // The contacts of the last step, at its end: for sounds, marks, scripts.
   const ContactSet& contacts() const { return set_; }
+
+  // How deep a point of a body is inside of the ground, an obstacle or another body, measured
+  // afresh at the coordinates q: the deepest of each pair that is deeper than a part of the body's
+  // size, or of the smaller one's. Bodies in their order.
+  struct Overlap {
+    BodyId body;
+    BodyId other;         // invalid: not a body
+    ObstacleId obstacle;  // invalid: not an obstacle. Neither: the ground
+    double depth_m;
+  };
+  void findOverlaps(std::span<const double> q, double leastShare, std::vector<Overlap>& out);
 
   // For steppers. Pairs that constraints tie to each other do not collide either; `ties` sorted.
   using Pair = std::pair<BodyId, BodyId>;  // first < second
@@ -81,8 +97,12 @@ class BodyContacts {
     ObstacleId id;
     const Field* field;
     double friction;
+    const SurfaceField* padding = nullptr;  // `field`, if it gives way
+    double modulus_Pa = 0;
   };
   void refresh();
+  void placePoints(BodyId body, std::span<const double> q, VectorArray& points) const;
+  double depthOf(const VectorArray& points, const Field& field, SolidId solid) const;
   bool collides(BodyId a, BodyId b) const;
 
   const BodyModel& model_;
@@ -95,6 +115,7 @@ class BodyContacts {
   bool changed_ = true;
   BodyField field_;
   ContactSet set_;
+  std::vector<double> still_;  // velocities of none
   std::unique_ptr<class ContactSearch> search_;
 };
 

@@ -39,6 +39,15 @@ std::vector<std::size_t> extremePoints(const std::vector<Vec3>& vertices) {
   return extremes;
 }
 
+double areaOf(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    sum +=
+        0.5 *
+        (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).norm();
+  return sum;
+}
+
 }  // namespace
 
 ContactPoints makeContactPoints(const BodyShape& shape, const BodySurface& surface,
@@ -64,6 +73,8 @@ ContactPoints makeContactPoints(const BodyShape& shape, const BodySurface& surfa
   };
   while (!vertices.empty() && take(farthest())) {
   }
+  if (points.size() > 0)
+    points.area_m2 = areaOf(surface.mesh()) / static_cast<double>(points.size());
   points.weights.resize(shape.shapeCount(), static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     points.weights.col(static_cast<Eigen::Index>(i)) = shape.pointWeights(points.X_m[i]);

@@ -11,6 +11,7 @@ namespace fascia {
 struct ContactPoints {
   std::vector<Vec3> X_m;    // undeformed
   Eigen::MatrixXd weights;  // shapeCount × points: column i is s(X_i)
+  double area_m2 = 0;       // of the undeformed surface, for each
 
   std::size_t size() const { return X_m.size(); }
 };

@@ -22,6 +22,10 @@ constexpr double kRecovery_per_s = 1;
 // Of m_eff/h², see BodyContacts. Larger: smaller gaps and more iterations between bodies.
 constexpr double kStiffness = 30;
 constexpr double kLoadStiffness = 0.25;
+// With a point that is deeper inside of another body than this part of the smaller one's size a
+// body does not touch the other, it is tangled with it: pushed out of the nearest sides, one would
+// burst the other. They go apart as wholes.
+constexpr double kDeep = 0.15;
 // In two dimensions a surface that faces the plane less than this cannot push within it.
 constexpr double kFlat = 0.2;
 
@@ -61,7 +65,7 @@ void ContactSearch::resize() {
     work.way.resize(3, static_cast<Eigen::Index>(count));
     for (VectorArray* array : {&work.place, &work.normal, &work.endNormal, &work.velocity})
       array->resize(count);
-    work.distance_m.resize(count), work.endDistance_m.resize(count);
+    work.distance_m.resize(count), work.endDistance_m.resize(count), work.depth_m.resize(count);
     work.picked.reserve(count), work.found.reserve(count);
   }
   order_.clear();
@@ -90,6 +94,15 @@ double ContactSearch::marginOf(BodyId body, double otherSize_m) const {
   constexpr double kMarginShare = 0.01;
   if (contacts_.settings_.margin_m > 0) return contacts_.settings_.margin_m;
   return kMarginShare * std::min(contacts_.model_.shape(body).size_m(), otherSize_m);
+}
+
+double ContactSearch::stiffnessOf(BodyId body, const Contact& contact, const Target& target) const {
+  const double margin_m = contact.energy.margin;
+  const double forLoad =
+      kLoadStiffness * contacts_.heaviest_kg_ * contacts_.gravity_m_per_s2_ / margin_m;
+  if (!target.padding) return std::max(kStiffness * contact.inertia_N_per_m, forLoad);
+  const double area_m2 = contacts_.bodies_[body.index()].points->area_m2;
+  return std::max(target.modulus_Pa * area_m2 / margin_m, forLoad);
 }
 
 // Where the points are at the beginning of the step, and their first guess of a way.
@@ -142,8 +155,14 @@ void ContactSearch::gatherObstacles() {
   for (const BodyContacts::Obstacle& obstacle : contacts_.obstacles_) {
     for (std::size_t s = 0; s < obstacle.field->solidCount(); ++s) {
       const SolidId solid(s);
-      Target target{obstacle.field,    solid,    obstacle.field->bounds(solid),
-                    obstacle.friction, HUGE_VAL, {}};
+      Target target{obstacle.field,
+                    solid,
+                    obstacle.field->bounds(solid),
+                    obstacle.friction,
+                    HUGE_VAL,
+                    {},
+                    obstacle.padding,
+                    obstacle.modulus_Pa};
       if (target.bounds.empty()) continue;
       target.bounds =
           inflated(target.bounds, speedOf(*obstacle.field, solid) * (step_.h_s + step_.lead_s));
@@ -211,6 +230,12 @@ void ContactSearch::meet(BodyId body, const Target& target) {
   for (std::size_t i = 0; i < count; ++i) setPoint(work.place, i, start(i) + way(i));
   target.field->evaluate(target.solid, first(work.place), work.endDistance_m.data(),
                          first(work.endNormal));
+  if (target.padding) target.padding->softness(first(work.place), work.depth_m.data());
+  const double size_m = std::min(contacts_.model_.shape(body).size_m(), target.size_m);
+  const bool tangled = target.body.valid() &&
+                       std::any_of(work.distance_m.begin(),
+                                   work.distance_m.begin() + static_cast<std::ptrdiff_t>(count),
+                                   [&](float d) { return d < -kDeep * size_m; });
   for (std::size_t i = 0; i < count; ++i) {
     const Plane begin{rounded(start(i)), work.distance_m[i], pointAt(first(work.normal), i)};
     const Plane end{rounded(start(i) + way(i)), work.endDistance_m[i],
@@ -218,7 +243,10 @@ void ContactSearch::meet(BodyId body, const Target& target) {
     const double length_m = way(i).norm();
     const bool covered = begin.distance_m + end.distance_m >= length_m && end.distance_m >= 0;
     const bool isShort = length_m <= kShortWay * margin_m;
-    const Plane plane = covered || isShort ? end : trace(begin, end, target, margin_m);
+    Plane plane = tangled ? begin : covered || isShort ? end : trace(begin, end, target, margin_m);
+    if (tangled && plane.distance_m >= 0) continue;
+    plane.deep = tangled;
+    if (target.padding) plane.depth_m = work.depth_m[i];
     const Vec3 drift = step_.h_s * pointAt(first(work.velocity), i);
     addContact(body, work.picked[i], plane, start(i), way(i),
                target.body.valid() ? Vec3(Vec3::Zero()) : drift, target);
@@ -243,6 +271,15 @@ ContactSearch::Plane ContactSearch::trace(const Plane& first, const Plane& last,
   return plane;
 }
 
+// From one body's middle to the other's: all deep points of both go the same way.
+Vec3 ContactSearch::wayApart(BodyId body, BodyId other) const {
+  Vec3 way = work_[body.index()].box.center() - work_[other.index()].box.center();
+  if (contacts_.model_.dimension() == 2) way.z() = 0;
+  const double length_m = way.norm();
+  if (length_m > 0) return way / length_m;
+  return body < other ? Vec3(-Vec3::UnitY()) : Vec3(Vec3::UnitY());
+}
+
 void ContactSearch::addContact(BodyId body, int point, Plane plane, const Vec3& start,
                                const Vec3& way, const Vec3& drift_m, const Target& target) {
   const BodyModel& model = contacts_.model_;
@@ -253,14 +290,16 @@ void ContactSearch::addContact(BodyId body, int point, Plane plane, const Vec3& 
   contact.normal = plane.normal / facing;
   if (model.dimension() == 2) contact.normal.z() = 0;
   contact.drift_m = drift_m;
-  contact.gap_m = plane.distance_m / facing + contact.normal.dot(start - plane.place_m);
-  contact.energy.margin_m = marginOf(body, target.size_m);
+  contact.gap_m =
+      plane.distance_m / facing + contact.normal.dot(start - plane.place_m) + plane.depth_m;
+  contact.energy.margin = target.padding ? plane.depth_m : marginOf(body, target.size_m);
   const double end_m = contact.gap_m + contact.normal.dot(way);
   // Beyond this nothing will come near that is not on its way already.
-  const double reach_m = 2 * contact.energy.margin_m + 0.25 * way.norm() +
+  const double reach_m = 2 * contact.energy.margin + 0.25 * way.norm() +
                          contacts_.gravity_m_per_s2_ * step_.h_s * step_.h_s;
   if (!(std::min(contact.gap_m, end_m) < reach_m)) return;
   const double size_m = std::min(model.shape(body).size_m(), target.size_m);
+  if (plane.deep) contact.normal = wayApart(body, target.body);
   contact.gap_m -= std::min(0.0, contact.gap_m + kRecovery_per_s * size_m * step_.h_s);
   const ContactPoints& points = *contacts_.bodies_[body.index()].points;
   const int k = model.shape(body).shapeCount();
@@ -270,7 +309,8 @@ void ContactSearch::addContact(BodyId body, int point, Plane plane, const Vec3& 
   const std::size_t firstWeight = work.weights.size();
   if (target.body.valid()) {
     const BodyShape& other = model.shape(target.body);
-    const Vec3 touched = plane.place_m - plane.distance_m * plane.normal;
+    const Vec3 touched =
+        plane.deep ? plane.place_m : Vec3(plane.place_m - plane.distance_m * plane.normal);
     work.weights.resize(firstWeight + static_cast<std::size_t>(other.shapeCount()));
     Eigen::Map<Eigen::VectorXd> s(work.weights.data() + firstWeight, other.shapeCount());
     other.pointWeights(target.field->materialFromWorld(target.solid, touched), s);
@@ -278,10 +318,7 @@ void ContactSearch::addContact(BodyId body, int point, Plane plane, const Vec3& 
     mobility_per_kg += s.squaredNorm();
   }
   contact.inertia_N_per_m = 1 / (mobility_per_kg * step_.h_s * step_.h_s);
-  contact.energy.stiffness_N_per_m =
-      std::max(kStiffness * contact.inertia_N_per_m, kLoadStiffness * contacts_.heaviest_kg_ *
-                                                         contacts_.gravity_m_per_s2_ /
-                                                         contact.energy.margin_m);
+  contact.energy.stiffness = stiffnessOf(body, contact, target);
   contact.friction = std::sqrt(contacts_.bodies_[body.index()].friction * target.friction);
   contact.smoothing_m = contacts_.settings_.creep_per_s * size_m * step_.h_s;
   work.found.push_back({contact, firstWeight});

@@ -25,11 +25,15 @@ class ContactSearch {
     Box bounds;  // of its whole way
     double friction, size_m;
     BodyId body;  // invalid: an obstacle
+    const SurfaceField* padding = nullptr;
+    double modulus_Pa = 0;
   };
   struct Plane {
     Vec3 place_m;  // where the distance is from
     double distance_m;
     Vec3 normal;
+    double depth_m = 0;  // that padding has there
+    bool deep = false;   // inside of a body that it is tangled with
   };
   struct Found {
     Contact contact;
@@ -44,7 +48,7 @@ class ContactSearch {
     std::vector<std::size_t> near;  // bodies
     std::vector<int> picked;        // points that may meet the target at hand
     VectorArray place, normal, endNormal, velocity;
-    FloatArray distance_m, endDistance_m;
+    FloatArray distance_m, endDistance_m, depth_m;
   };
 
   void movePoints(BodyId body);
@@ -57,7 +61,9 @@ class ContactSearch {
   static Plane trace(const Plane& first, const Plane& last, const Target& target, double margin_m);
   void addContact(BodyId body, int point, Plane plane, const Vec3& start, const Vec3& way,
                   const Vec3& drift_m, const Target& target);
+  Vec3 wayApart(BodyId body, BodyId other) const;
   double marginOf(BodyId body, double otherSize_m) const;
+  double stiffnessOf(BodyId body, const Contact& contact, const Target& target) const;
   // What the obstacle's or body's velocity is multiplied with to see the step from its frame.
   double shift_s(const Target& target) const {
     return target.body.valid() ? 0 : step_.h_s + step_.lead_s;

@@ -76,17 +76,17 @@ void ContactSet::evaluateOne(std::size_t i, std::span<const double> way, Loads l
   const Vec3& n = contact.normal;
   state.slide_m = moved(contact.a, way) - moved(contact.b, way) - contact.drift_m;
   state.gap_m = contact.gap_m + n.dot(state.slide_m);
-  const double normal_N = contact.energy.force_N(state.gap_m);
+  const double normal_N = contact.energy.force(state.gap_m);
   if (loads == Loads::bound) {
-    const double stop_N = contact.inertia_N_per_m * (contact.energy.margin_m - state.gap_m);
-    const double rest_N = contact.energy.force_N(std::max(contact.gap_m, 0.0));
+    const double stop_N = contact.inertia_N_per_m * (contact.energy.margin - state.gap_m);
+    const double rest_N = contact.energy.force(std::max(contact.gap_m, 0.0));
     state.mostLoad_N = rest_N + std::max(stop_N, 0.0);
     state.load_N = std::min(normal_N, state.mostLoad_N);
   } else if (loads == Loads::follow) {
     state.load_N = std::min(state.nextLoad_N, state.mostLoad_N);
   }
   state.force_N = normal_N * n;
-  state.curvature_N_per_m = contact.energy.curvature_N_per_m(state.gap_m) * (n * n.transpose());
+  state.curvature_N_per_m = contact.energy.curvature(state.gap_m) * (n * n.transpose());
   const double friction_N = contact.friction * state.load_N;
   if (friction_N == 0) return;
   const Vec3 along = state.slide_m - n.dot(state.slide_m) * n;
@@ -158,8 +158,8 @@ void ContactSet::setDirection(std::span<const double> direction) {
     State& state = states_[i];
     state.directionSlide_m = moved(contact.a, direction) - moved(contact.b, direction);
     const double rise_m = contact.normal.dot(state.directionSlide_m);
-    state.nextLoad_N = std::max(0.0, contact.energy.force_N(state.gap_m) -
-                                         contact.energy.curvature_N_per_m(state.gap_m) * rise_m);
+    state.nextLoad_N = std::max(
+        0.0, contact.energy.force(state.gap_m) - contact.energy.curvature(state.gap_m) * rise_m);
   });
 }
 
@@ -175,7 +175,7 @@ double ContactSet::merit_J(double step) const {
     const State& state = states_[i];
     const Vec3 slide = state.slide_m + step * state.directionSlide_m;
     const double normal = contact.normal.dot(slide);
-    sum += contact.energy.value_J(contact.gap_m + normal);
+    sum += contact.energy.value(contact.gap_m + normal);
     const double friction_N = contact.friction * state.load_N;
     if (friction_N > 0)
       sum += friction_N *
@@ -187,7 +187,7 @@ double ContactSet::merit_J(double step) const {
 double ContactSet::gapEnergy_J() const {
   double sum = 0;
   for (std::size_t i = 0; i < contacts_.size(); ++i)
-    sum += contacts_[i].energy.value_J(states_[i].gap_m);
+    sum += contacts_[i].energy.value(states_[i].gap_m);
   return sum;
 }
 

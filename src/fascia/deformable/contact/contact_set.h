@@ -5,6 +5,7 @@
 
 #include <fascia/deformable/body/body_model.h>
 #include <fascia/deformable/contact/contact_potential.h>
+#include <fascia/math/log_barrier.h>
 
 namespace fascia {
 
@@ -22,7 +23,7 @@ struct Contact {
   Vec3 normal = Vec3::UnitY();  // away from b; of unit length, in two dimensions with z = 0
   Vec3 drift_m = Vec3::Zero();
   double gap_m = 0;
-  GapEnergy energy;
+  LogBarrier energy;           // of the gap: m, N/m
   double friction = 0;         // µ
   double smoothing_m = 0;      // of friction, in this step
   double inertia_N_per_m = 0;  // what resists a push at the contact, m_eff/h²

@@ -2,8 +2,20 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <fascia/math/log_barrier.h>
+
 namespace fascia {
 namespace {
+
+// Matter that is squeezed below this part of its volume hardens. Larger: scenes with much squeezed
+// bodies change. Smaller: its way of hardening gets steeper than steps can follow.
+constexpr double kLeastVolume = 0.2;
+// Goes on so far that what is a thousand times heavier than a body lies on it.
+constexpr double kParabola = 1.0 / 1024;
+
+LogBarrier collapseOf(const BodyMaterial& m) {
+  return {kLeastVolume, 4 * m.rigidity_Pa + 2 * m.volume_Pa, kParabola};
+}
 
 // The matrix of dF ↦ F (dFᵀF + FᵀdF), of which both derivatives below are made: with F's entries
 // F_rα, its entry (rα, sβ) is F_rβ F_sα + (F Fᵀ)_rs δ_αβ.
@@ -51,16 +63,19 @@ Mat3 cofactors(const Mat3& F) {
 }
 
 double strainEnergyDensity(const BodyMaterial& m, const Mat3& F) {
-  const double growth = F.determinant() - 1;
-  return m.rigidity_Pa * (F.transpose() * F - Mat3::Identity()).squaredNorm() +
-         m.volume_Pa * growth * growth;
+  const double J = F.determinant(), growth = J - 1;
+  const double density = m.rigidity_Pa * (F.transpose() * F - Mat3::Identity()).squaredNorm() +
+                         m.volume_Pa * growth * growth;
+  return J < kLeastVolume ? density + collapseOf(m).value(J) : density;
 }
 
 // By columns, which steps of many bodies do most of the time: F (FᵀF − I) in six scalar products.
 Mat3 strainStress(const BodyMaterial& m, const Mat3& F) {
   const Vec3 x = F.col(0), y = F.col(1), z = F.col(2);
   const Vec3 yz = y.cross(z), zx = z.cross(x), xy = x.cross(y);  // the cofactors
-  const double elastic = 4 * m.rigidity_Pa, volume = 2 * m.volume_Pa * (x.dot(yz) - 1);
+  const double elastic = 4 * m.rigidity_Pa, J = x.dot(yz);
+  double volume = 2 * m.volume_Pa * (J - 1);
+  if (J < kLeastVolume) volume -= collapseOf(m).force(J);
   const double shearXY = x.dot(y), shearYZ = y.dot(z), shearZX = z.dot(x);
   Mat3 P;
   P.col(0) = elastic * ((x.squaredNorm() - 1) * x + shearXY * y + shearZX * z) + volume * yz;
@@ -80,9 +95,12 @@ Mat9 strainStiffness(const BodyMaterial& m, const Mat3& F, Curvature curvature) 
   const Mat3 cofactor = cofactors(F);
   const Eigen::Map<const Eigen::Matrix<double, 9, 1>> c(cofactor.data());
   K += 2 * m.volume_Pa * c * c.transpose();
+  const double J = F.col(0).dot(cofactor.col(0));
+  const bool squeezed = J < kLeastVolume;
+  if (squeezed) K += collapseOf(m).curvature(J) * c * c.transpose();
   if (curvature == Curvature::exact) {
-    const double growth = F.col(0).dot(cofactor.col(0)) - 1;
-    addCofactorSlope(F, 2 * m.volume_Pa * growth, K);
+    const double pressure = squeezed ? collapseOf(m).force(J) : 0;
+    addCofactorSlope(F, 2 * m.volume_Pa * (J - 1) - pressure, K);
   }
   return K;
 }

@@ -11,9 +11,12 @@ using Mat9 = Eigen::Matrix<double, 9, 9>;
 // rest, for Newton steps that must go downhill.
 enum class Curvature { exact, positive };
 
-// ψ(F) = k_e ‖FᵀF − I‖² + k_c (det F − 1)², J/m³, of the deformation gradient F = ∂x/∂X.
+// ψ(F) = k_e ‖FᵀF − I‖² + k_c (det F − 1)², J/m³, of the deformation gradient F = ∂x/∂X. The
+// paper's energy is finite for matter that is flat or inside out, and may be at rest so; here a
+// LogBarrier of det F is added, of stiffness 4 k_e + 2 k_c, where less than a fifth of the volume
+// is left.
 double strainEnergyDensity(const BodyMaterial& material, const Mat3& F);
-// ∂ψ/∂F = 4 k_e F (FᵀF − I) + 2 k_c (det F − 1) cof F, Pa: the first Piola–Kirchhoff stress.
+// ∂ψ/∂F = 4 k_e F (FᵀF − I) + 2 k_c (det F − 1) cof F + …, Pa: the first Piola–Kirchhoff stress.
 Mat3 strainStress(const BodyMaterial& material, const Mat3& F);
 // ∂²ψ/∂F∂F, Pa, F taken column by column.
 Mat9 strainStiffness(const BodyMaterial& material, const Mat3& F, Curvature curvature);

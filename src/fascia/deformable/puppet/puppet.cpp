@@ -136,6 +136,7 @@ void Puppet::cancel(BehaviourId id) {
 }
 
 void Puppet::update(double h_s) {
+  stopSqueezing();
   // A behaviour may run others, which makes the list grow.
   for (std::size_t i = 0; i < running_.size(); ++i) {
     if (running_[i].done) continue;

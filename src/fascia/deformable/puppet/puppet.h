@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -87,6 +88,17 @@ class Puppet {
   bool running(BehaviourId behaviour) const;
   void cancel(BehaviourId behaviour);
 
+  // A control that moves lets go of its point rather than squeeze a body flat: the one it leads,
+  // against something, or one that stands in the way (what is left of either is below kLeastGrowth
+  // somewhere). Whose point, when, and whom it squeezed; in the order of time.
+  struct LetGo {
+    double time_s;
+    PuppetPointId point;
+    BodyId squeezed;
+  };
+  std::span<const LetGo> letGos() const { return letGos_; }
+  static constexpr double kLeastGrowth = 0.1;
+
   // Before every step, from time_s() to time_s() + h_s, h_s > 0.
   void update(double h_s);
 
@@ -99,6 +111,7 @@ class Puppet {
   struct Control {
     PuppetPointId point;
     ConstraintId constraint;
+    PointPath path;
     PuppetPointId place;  // that the point is connected to; invalid: it is led otherwise
   };
   struct Connection {
@@ -131,6 +144,8 @@ class Puppet {
   void endControl(PuppetPointId point);
   ConstraintPtr makeSpring(const Pull& pull) const;
   void updatePushes(double h_s);
+  void stopSqueezing();
+  BodyId squeezedBy(BodyId led) const;  // invalid: none
 
   BodySystem& system_;
   OdeState& state_;
@@ -140,6 +155,7 @@ class Puppet {
   std::vector<Connection> connections_;
   std::vector<Pull> pulls_;
   std::vector<Push> pushes_;
+  std::vector<LetGo> letGos_;
   std::vector<Running> running_;
   int nextBehaviour_ = 0;
 };

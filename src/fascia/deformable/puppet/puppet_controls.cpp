@@ -5,6 +5,7 @@
 #include <fascia/base/error.h>
 #include <fascia/base/suggest.h>
 #include <fascia/deformable/constraint/closing_attachment.h>
+#include <fascia/deformable/contact/body_contact.h>
 #include <fascia/deformable/puppet/puppet.h>
 
 // What acts on the points of a puppet.
@@ -24,9 +25,9 @@ void checkFinite(const char* what, const Vec3& v) {
 
 ConstraintId Puppet::lead(PuppetPointId point, PointPath path) {
   const BodyPoint& on = bodyPoint(point);
-  const ConstraintPtr constraint = makeTrajectory("control of " + name(point), on, std::move(path));
+  const ConstraintPtr constraint = makeTrajectory("control of " + name(point), on, path);
   endControl(point);
-  controls_.push_back({point, system_.hold(constraint), {}});
+  controls_.push_back({point, system_.hold(constraint), std::move(path), {}});
   return controls_.back().constraint;
 }
 
@@ -152,6 +153,36 @@ void Puppet::endPull(PuppetPointId point) {
 void Puppet::impulse(PuppetPointId point, const Vec3& impulse_Ns) {
   checkFinite("impulse", impulse_Ns);
   system_.applyImpulse(bodyPoint(point), impulse_Ns, state_);
+}
+
+// Of all that the body touches, itself included.
+BodyId Puppet::squeezedBy(BodyId led) const {
+  const BodyModel& model = system_.model();
+  const auto squeezed = [&](BodyId body) {
+    return model.shape(body).leastGrowth(model.part(body, std::span<const double>(state_.r))) <
+           kLeastGrowth;
+  };
+  const ContactSet& set = std::as_const(*system_.contacts()).contacts();
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const bool pair = set[i].b.count > 0;
+    if (set.load_N(i) == 0 || (set[i].a.body != led && !(pair && set[i].b.body == led))) continue;
+    if (squeezed(set[i].a.body)) return set[i].a.body;
+    if (pair && squeezed(set[i].b.body)) return set[i].b.body;
+  }
+  return {};
+}
+
+void Puppet::stopSqueezing() {
+  constexpr double kStill_m_per_s = 1e-6;
+  if (!system_.contacts()) return;
+  std::erase_if(controls_, [&](const Control& control) {
+    if (control.path(state_.t_s).velocity_m_per_s.norm() < kStill_m_per_s) return false;
+    const BodyId squeezed = squeezedBy(bodyPoint(control.point).body);
+    if (!squeezed.valid()) return false;
+    system_.release(control.constraint);
+    letGos_.push_back({state_.t_s, control.point, squeezed});
+    return true;
+  });
 }
 
 // By a control of a moment's duration: the impulse is the smallest that all constraints allow.

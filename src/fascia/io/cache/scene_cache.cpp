@@ -11,9 +11,10 @@ namespace fascia {
 namespace {
 
 // Layout, little-endian: magic, u32 version; the scene file's text; per character its own cache;
-// per body made of a mesh the mesh; rate; per frame time and bodies; what the script said; stats.
+// per body made of a mesh the mesh; rate; per frame time and bodies; what the script said; stats;
+// from version 2 on: troubles.
 constexpr std::string_view kSceneMagic("FSCENE\x1a\n", 8);
-constexpr std::uint32_t kSceneVersion = 1;
+constexpr std::uint32_t kSceneVersion = 2;
 
 template <class Stats, class Visit>
 void eachBodyStat(Stats& s, const Visit& visit) {
@@ -69,6 +70,33 @@ void readFrames(ByteReader& in, std::size_t coordinates, StageRecording& out) {
   }
 }
 
+void writeTroubles(ByteWriter& out, const std::vector<BodyTrouble>& troubles) {
+  out.value(static_cast<std::uint64_t>(troubles.size()));
+  for (const BodyTrouble& t : troubles) {
+    out.value(static_cast<std::uint8_t>(t.kind));
+    out.value(static_cast<std::uint64_t>(t.body.index()));
+    out.text(t.with);
+    out.value(t.from_s), out.value(t.to_s), out.value(t.worst);
+    out.value(static_cast<std::uint8_t>(t.lasts));
+  }
+}
+
+void readTroubles(ByteReader& in, std::size_t bodies, std::vector<BodyTrouble>& troubles) {
+  const auto count = in.value<std::uint64_t>();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const auto kind = in.value<std::uint8_t>();
+    const auto body = in.value<std::uint64_t>();
+    if (kind > static_cast<std::uint8_t>(BodyTrouble::Kind::letGo) || body >= bodies)
+      in.fail("tells of a trouble that is none");
+    BodyTrouble trouble{static_cast<BodyTrouble::Kind>(kind), BodyId(body), in.text(), 0, 0, 0};
+    trouble.from_s = in.value<double>();
+    trouble.to_s = in.value<double>();
+    trouble.worst = in.value<double>();
+    trouble.lasts = in.value<std::uint8_t>() != 0;
+    troubles.push_back(std::move(trouble));
+  }
+}
+
 }  // namespace
 
 void writeSceneCache(const Stage& stage, const StageRecording& recording, const std::string& path) {
@@ -95,6 +123,7 @@ void writeSceneCache(const Stage& stage, const StageRecording& recording, const 
   out.value(recording.wall_s);
   out.value(recording.simulated_s);
   out.value(recording.state_hash);
+  writeTroubles(out, recording.troubles);
   writeFileWhole(path, out.bytes);
 }
 
@@ -103,9 +132,9 @@ SceneCache parseSceneCache(std::string_view bytes, const std::string& file) {
   if (!isSceneCache(bytes)) in.fail("is not a Fascia scene cache");
   in.take(kSceneMagic.size());
   const auto version = in.value<std::uint32_t>();
-  if (version != kSceneVersion)
-    in.fail("has scene cache format " + std::to_string(version) + ", this program reads format " +
-            std::to_string(kSceneVersion));
+  if (version < 1 || version > kSceneVersion)
+    in.fail("has scene cache format " + std::to_string(version) +
+            ", this program reads formats up to " + std::to_string(kSceneVersion));
   std::vector<Texture> textures;
   std::vector<Recording> characters;
   SceneDef def = readScene(in, file, textures, characters);
@@ -129,6 +158,7 @@ SceneCache parseSceneCache(std::string_view bytes, const std::string& file) {
   recording.wall_s = in.value<double>();
   recording.simulated_s = in.value<double>();
   recording.state_hash = in.value<std::uint64_t>();
+  if (version >= 2) readTroubles(in, out.stage.bodies().bodyCount(), recording.troubles);
   if (in.left() > 0) in.fail("has bytes after its end");
   return out;
 }

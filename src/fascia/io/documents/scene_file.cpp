@@ -82,6 +82,7 @@ SceneFile readSceneFile(const std::string& path, const BuildOptions& options) {
 
 Stage loadStage(const std::string& path, const BuildOptions& options) {
   SceneFile file = readSceneFile(path, options);
+  if (options.step_s > 0) file.def.simulation.step_s = options.step_s;
   try {
     Stage stage(std::move(file.def));
     stage.setWarnings(file.lines.locate(stage.warnings()));

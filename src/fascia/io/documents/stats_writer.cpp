@@ -54,6 +54,21 @@ Json statsOf(const Recording& recording) {
   return out;
 }
 
+Json toJson(const Stage& stage, const BodyTrouble& trouble) {
+  using Kind = BodyTrouble::Kind;
+  Json out;
+  out.set("kind", nameOf(trouble.kind));
+  out.set("body", stage.body(trouble.body).name);
+  if (!trouble.with.empty()) out.set("with", trouble.with);
+  out.set("from_s", trouble.from_s);
+  out.set("to_s", trouble.to_s);
+  if (trouble.kind == Kind::sunk || trouble.kind == Kind::inside) out.set("depth_m", trouble.worst);
+  if (trouble.kind == Kind::insideOut || trouble.kind == Kind::crushed)
+    out.set("volume_left", trouble.worst);
+  out.set("lasts", trouble.lasts);
+  return out;
+}
+
 }  // namespace
 
 std::string statsJson(const Recording& recording) {
@@ -78,7 +93,10 @@ std::string statsJson(const Stage& stage, const StageRecording& recording) {
   out.set("stopped_steps", count(bodies.stopped));
   out.set("outcome", kOutcomes[static_cast<std::size_t>(recording.outcome)]);
   if (!recording.reason.empty()) out.set("reason", recording.reason);
-  Json::List log, characters;
+  out.set("sound", !anyFault(recording.troubles));
+  Json::List troubles, log, characters;
+  for (const BodyTrouble& trouble : recording.troubles) troubles.push_back(toJson(stage, trouble));
+  out.set("troubles", std::move(troubles));
   for (const ScriptLogLine& line : recording.log)
     log.push_back(Json::Object{{"time_s", line.time_s}, {"text", line.text}});
   for (const Recording& character : recording.characters) characters.push_back(statsOf(character));

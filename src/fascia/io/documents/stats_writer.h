@@ -13,7 +13,8 @@ namespace fascia {
 std::string statsJson(const Recording& recording);
 void writeStats(const Recording& recording, const std::string& path);
 // Of a scene: frames, simulated_s, wall_s, realtime_ratio, steps, iterations, halved_steps,
-// unconverged_steps, stopped_steps, outcome, reason, log, characters (each as above), …
+// unconverged_steps, stopped_steps, outcome, reason, sound, troubles (kind, body, with, from_s,
+// to_s, depth_m or volume_left, lasts: see world/trouble.h), log, characters (each as above), …
 std::string statsJson(const Stage& stage, const StageRecording& recording);
 
 }  // namespace fascia
