@@ -54,7 +54,7 @@ TEST(IdleSettings, OfAPosedMeshAreThoseOfGridsAndOfWhatIsSimulated) {
   def.skin->material.drag_Ns_per_m3 = 1;
   def.skin->tissue.rest_length_m = 0;
   def.skin->fat.thickness_m = 0.5;  // where fat is edited, this is what is there
-  def.skin->points.emplace().density = {1};
+  def.skin->points.emplace().density = std::vector<float>{1};
   def.simulation.settle_s = 1;
   def.simulation.integrator = "verlet";
   EXPECT_THAT(idlePlaces(def),

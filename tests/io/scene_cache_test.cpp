@@ -155,7 +155,7 @@ TEST_F(SceneCacheTest, CutShortAnywhereItIsRefused) {
 
 TEST_F(SceneCacheTest, HeadersOfOthersAreRefused) {
   expectRefused(patched(0, 'X'), "not a Fascia scene cache");
-  expectRefused(patched(8, std::uint32_t{2}), "format 2");
+  expectRefused(patched(8, std::uint32_t{3}), "format 3");
   expectRefused(patched(12, std::numeric_limits<std::uint64_t>::max()), "cut short");
 }
 

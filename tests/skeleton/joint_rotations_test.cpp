@@ -46,7 +46,7 @@ Tumble tumble(const Vec3& axis) {
   Tumble worst;
   Posture posture = skeleton.restPosture();
   PosedSkeleton posed, byAngles;
-  Vec3 spinBefore;
+  Vec3 spinBefore = Vec3::Zero();
   std::vector<double> before = posture.values;
   for (int f = 0; f <= 960; ++f) {
     const double t = f * kTumbleFrame_s;

@@ -15,10 +15,6 @@ Vec3 pointOf(const Stage& stage, const Performance& performance, const std::stri
   return stage.bodies().point(performance.bodies().r, *stage.findPoint(name));
 }
 
-void run(Performance& performance, double seconds) {
-  for (int i = 0; i < std::lround(60 * seconds); ++i) performance.advance(1.0 / 60);
-}
-
 SceneDef fallingBall() {
   SceneDef def;
   def.bodies = {test::ball("ball", Vec3(0, 2, 0))};
@@ -28,7 +24,7 @@ SceneDef fallingBall() {
 TEST(Performance, AFreeBodyFallsAsImplicitEulerSaysItDoes) {
   const Stage stage(fallingBall());
   Performance performance(stage);
-  run(performance, 0.5);
+  test::run(performance, 0.5);
   EXPECT_DOUBLE_EQ(performance.time_s(), 0.5);
   // Σ h² g i over n steps: g t (t + h) / 2.
   const double h_s = 1.0 / 120, expected = 2 - 0.5 * 9.81 * 0.5 * (0.5 + h_s);
@@ -46,7 +42,7 @@ TEST(Performance, GroundAndPropsStopWhatFalls) {
   for (SceneBodyDef& body : def.bodies) body.rigidity_Pa = 1e5, body.volume_Pa = 2e5;
   const Stage stage(def);
   Performance performance(stage);
-  run(performance, 2);
+  test::run(performance, 2);
   EXPECT_NEAR(pointOf(stage, performance, "ball").y(), 0.7, 0.02);
   EXPECT_NEAR(pointOf(stage, performance, "other").y(), 1.3, 0.02);
 }
@@ -57,7 +53,7 @@ TEST(Performance, BodiesThatDoNotCollideFallThrough) {
   def.bodies[0].collides = false;
   const Stage stage(def);
   Performance performance(stage);
-  run(performance, 1);
+  test::run(performance, 1);
   EXPECT_LT(pointOf(stage, performance, "ball").y(), -1);
 }
 
@@ -91,9 +87,9 @@ TEST(Performance, FollowsKeyframedPaths) {
       {"ball.top", {{0.5, Vec3(0, 2, 0), {}, {}}, {1, Vec3(1, 2, 0), {}, {}}}, 0.25});
   const Stage stage(def);
   Performance performance(stage);
-  run(performance, 0.5);
+  test::run(performance, 0.5);
   EXPECT_NEAR((pointOf(stage, performance, "ball.top") - Vec3(0, 2, 0)).norm(), 0, 1e-6);
-  run(performance, 0.5);
+  test::run(performance, 0.5);
   EXPECT_NEAR((pointOf(stage, performance, "ball.top") - Vec3(1, 2, 0)).norm(), 0, 1e-6);
 }
 
@@ -104,7 +100,7 @@ TEST(Performance, TheScriptDrivesItAndItsErrorsNameTheLine) {
   {
     const Stage stage(def);
     Performance performance(stage);
-    run(performance, 0.6);
+    test::run(performance, 0.6);
     EXPECT_EQ(performance.script()->outcome(), ScriptOutcome::succeeded);
     EXPECT_NEAR((pointOf(stage, performance, "ball.top") - Vec3(1, 3, 0)).norm(), 0, 1e-6);
   }
@@ -112,7 +108,7 @@ TEST(Performance, TheScriptDrivesItAndItsErrorsNameTheLine) {
   const Stage stage(def);
   Performance performance(stage);
   try {
-    run(performance, 1);
+    test::run(performance, 1);
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.issues().front().where.file, "act.lua");
@@ -138,7 +134,7 @@ std::uint64_t hashAfter(std::uint64_t seed, int threads) {
   const ThreadLimit limit(threads);
   const Stage stage(heap());
   Performance performance(stage, seed);
-  run(performance, 1.5);
+  test::run(performance, 1.5);
   return performance.hash();
 }
 
@@ -169,14 +165,14 @@ TEST(Performance, MovesACharacterByAnySource) {
   Performance performance(stage);
   const ClipSource waving = doll.source(0);
   performance.setSource(0, &waving);
-  run(performance, 0.4);
+  test::run(performance, 0.4);
   PostureSample wanted;
   waving.sample(performance.time_s(), wanted);
   const std::vector<double> rest = doll.skeleton().restPosture().values;
   ASSERT_NE(wanted.posture.values, rest);
   EXPECT_EQ(performance.character(0).posture.values, wanted.posture.values);
   performance.setSource(0, nullptr);
-  run(performance, 0.1);
+  test::run(performance, 0.1);
   EXPECT_EQ(performance.character(0).posture.values, rest);
 }
 
@@ -223,7 +219,7 @@ TEST(Performance, SkinsOnGridsAreKeptOutOfPropsAndBodies) {
   def.props[0].position_m = beside;
   const Stage stage(def);
   Performance performance(stage);
-  run(performance, 0.2);
+  test::run(performance, 0.2);
   EXPECT_LT(deepest(performance, stage, beside, 0.12), 1e-3);
 
   // The same as a body that is held there.
@@ -238,7 +234,7 @@ TEST(Performance, SkinsOnGridsAreKeptOutOfPropsAndBodies) {
     def.constraints.push_back({"", SceneConstraintDef::Kind::nail, {point}});
   const Stage held(def);
   Performance second(held);
-  run(second, 0.2);
+  test::run(second, 0.2);
   EXPECT_LT(deepest(second, held, beside, 0.12), 2e-3);
 }
 
@@ -249,7 +245,7 @@ TEST(Performance, JointsOfCharactersArePlacesThatBodiesHangOn) {
   def.script_text = "grab('ball.top', 'doll.neck', 0.5)";
   const Stage stage(def);
   Performance performance(stage);
-  run(performance, 1.5);
+  test::run(performance, 1.5);
   const Vec3 neck(2, 1.5, 1);
   EXPECT_NEAR((pointOf(stage, performance, "ball.top") - neck).norm(), 0, 1e-3);
 }

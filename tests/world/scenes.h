@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <fascia/base/error.h>
 #include <fascia/world/performance.h>
 
@@ -24,6 +26,10 @@ inline SceneBodyDef plate(const std::string& name, const Vec3& position_m) {
   body.position_m = position_m;
   body.points.push_back({"end", Vec3(0.2, 0, 0)});
   return body;
+}
+
+inline void run(Performance& performance, double seconds) {
+  for (int i = 0; i < std::lround(60 * seconds); ++i) performance.advance(1.0 / 60);
 }
 
 // Everything that is wrong with a scene, "pointer: message" each.

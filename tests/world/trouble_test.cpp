@@ -21,10 +21,6 @@ SceneBodyDef jelly(const std::string& name, const Vec3& position_m, double radiu
   return body;
 }
 
-void run(Performance& performance, double seconds) {
-  for (int i = 0; i < std::lround(60 * seconds); ++i) performance.advance(1.0 / 60);
-}
-
 double heightOf(Performance& performance, const std::string& name) {
   Puppet& puppet = performance.puppet();
   return puppet.distance_m(puppet.find(name + ".top"), puppet.find(name + ".foot"));
@@ -40,7 +36,7 @@ TEST(BodyTrouble, WhoStartsInTheGroundIsNamedAndComesOut) {
   EXPECT_EQ(performance.troubles()[0].kind, Kind::sunk);
   EXPECT_NEAR(performance.troubles()[0].worst, 0.15, 1e-3);
   EXPECT_TRUE(performance.troubles()[0].lasts);
-  run(performance, 2);
+  test::run(performance, 2);
   ASSERT_EQ(performance.troubles().size(), 1u);
   EXPECT_FALSE(performance.troubles()[0].lasts);
   EXPECT_LT(performance.troubles()[0].to_s, 1);
@@ -57,7 +53,7 @@ TEST(BodyTrouble, BodiesThatStartInsideOfEachOtherAreNamedAndPart) {
   ASSERT_FALSE(performance.troubles().empty());
   EXPECT_EQ(performance.troubles()[0].kind, Kind::inside);
   EXPECT_EQ(performance.troubles()[0].with, "b");
-  run(performance, 3);
+  test::run(performance, 3);
   for (const BodyTrouble& trouble : performance.troubles())
     EXPECT_FALSE(trouble.lasts) << textOf(stage, trouble);
   EXPECT_NEAR(heightOf(performance, "a"), 0.6, 0.06);
@@ -77,7 +73,7 @@ TEST(BodyTrouble, AChaseLetsGoRatherThanCrush) {
   for (const BodyTrouble& trouble : recording.troubles)
     EXPECT_FALSE(trouble.lasts) << textOf(stage, trouble);
   Performance performance(stage);
-  run(performance, 4);
+  test::run(performance, 4);
   EXPECT_NEAR(heightOf(performance, "big"), 0.7, 0.07);
   EXPECT_NEAR(heightOf(performance, "small"), 0.5, 0.05);
 }
@@ -89,7 +85,7 @@ TEST(BodyTrouble, NoneIsFoundInBodiesThatLieAndRoll) {
     def.bodies.push_back(jelly("b" + std::to_string(i), Vec3(0.05 * i, 0.21 + 0.42 * i, 0), 0.2));
   const Stage stage(def);
   Performance performance(stage);
-  run(performance, 3);
+  test::run(performance, 3);
   for (const BodyTrouble& trouble : performance.troubles()) ADD_FAILURE() << textOf(stage, trouble);
 }
 

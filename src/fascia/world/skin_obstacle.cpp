@@ -13,8 +13,10 @@ constexpr double kMostDepth = 0.05;
 }  // namespace
 
 SkinObstacle::SkinObstacle(const SceneCharacterDef& def, CharacterState& state)
-    : character_(*def.character), place_(placeOf(def)) {
-  carry(state, to_);
+    : character_(*def.character),
+      place_(placeOf(def)),
+      placer_(character_.skin()->attachment().makePlacer()) {
+  place(state, to_);
   from_ = now_ = to_;
   const std::vector<float> depth_m = depths(state);
   TriangleMesh mesh;
@@ -23,10 +25,10 @@ SkinObstacle::SkinObstacle(const SceneCharacterDef& def, CharacterState& state)
   field_ = std::make_unique<SurfaceField>(mesh, depth_m);
 }
 
-void SkinObstacle::carry(CharacterState& state, std::vector<Eigen::Vector3f>& points) {
+void SkinObstacle::place(const CharacterState& state, std::vector<Eigen::Vector3f>& points) {
   const Skin& skin = *character_.skin();
   skin_.resize(skin.topology().storage());
-  skin.placeAll({&state.flesh, state.skeleton.joint_world}, scratch_, skin_);
+  placer_->placeAll({&state.flesh, state.skeleton.joint_world}, skin_);
   skin.topology().surface(skin_, mesh_);
   points.resize(mesh_.positions.size());
   for (std::size_t v = 0; v < points.size(); ++v)
@@ -55,7 +57,7 @@ std::vector<float> SkinObstacle::depths(const CharacterState& state) const {
 void SkinObstacle::setFrame(double start_s, double end_s, CharacterState& state) {
   start_s_ = start_s, end_s_ = end_s;
   std::swap(from_, to_);
-  carry(state, to_);
+  place(state, to_);
 }
 
 void SkinObstacle::moveTo(double time_s) {

@@ -5,7 +5,6 @@
 
 #include <fascia/character/character.h>
 #include <fascia/field/surface_field.h>
-#include <fascia/skin/mesh/rigged_skin.h>
 #include <fascia/world/scene_def.h>
 
 namespace fascia {
@@ -26,12 +25,12 @@ class SkinObstacle {
   const SurfaceField& field() const { return *field_; }
 
  private:
-  void carry(CharacterState& state, std::vector<Eigen::Vector3f>& points);
+  void place(const CharacterState& state, std::vector<Eigen::Vector3f>& points);
   std::vector<float> depths(const CharacterState& state) const;
 
   const Character& character_;
   Transform place_;
-  CarryScratch scratch_;
+  std::unique_ptr<PointPlacer> placer_;
   VectorArray skin_;
   TriangleMesh mesh_;
   double start_s_ = 0, end_s_ = 1;
