@@ -1,8 +1,10 @@
 // Seeded random edits of every example while it moves. FASCIA_EDITS=10000 makes so many of each.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
+#include <fascia/math/points.h>
 #include <fascia/skin/grid/grid_wrap.h>
 
 #include "examples.h"
@@ -48,7 +50,7 @@ class EditedRun {
     CharacterState state = carryOver(character_, state_, edited);
     const bool sameGrid = edited.skin()->pointCount() == character_.skin()->pointCount() &&
                           edited.skin()->grid()->columns() == character_.skin()->grid()->columns();
-    if (sameGrid) {
+    if (sameGrid && !(wrapOf(edited) == wrapOf(character_) && fleshWentFar(state))) {
       EXPECT_TRUE(test::sameBits(state.skin.position, state_.skin.position));
       EXPECT_TRUE(test::sameBits(state.skin.velocity, state_.skin.velocity));
     }
@@ -70,6 +72,15 @@ class EditedRun {
   bool finite() const { return finite_; }
 
  private:
+  // A skin goes along with an edit that moves what it is tied to by more than this.
+  bool fleshWentFar(const CharacterState& edited) const {
+    const VectorArray &now = edited.skin.surroundings.anchor,
+                      &before = state_.skin.surroundings.anchor;
+    double farthest_m = 0;
+    for (std::size_t k = 0; k < now.size(); ++k)
+      farthest_m = std::max(farthest_m, (pointAt(now, k) - pointAt(before, k)).norm());
+    return farthest_m > 0.05 * character_.skin()->size_m();
+  }
   static const GridWrap* wrapOf(const Character& c) {
     return c.skin()->parts().gridRest->wrap.get();
   }

@@ -31,11 +31,12 @@ inline std::vector<BasisPtr> allBases() {
 inline std::shared_ptr<const BodyShape> makeBar(const BasisPtr& basis,
                                                 const BodyMaterial& material = {},
                                                 const Vec3& size_m = kBarSize_m,
-                                                double density = 1000) {
+                                                double density = 1000,
+                                                Crushing crushing = Crushing::free) {
   return std::make_shared<BodyShape>(BodyDef{
       basis,
       boxMatter(basis->dimension(), boxOf(size_m), density, MatterDetail::of(basis->degree())),
-      material});
+      material, crushing});
 }
 
 // A bar that is turned and bent out of shape by about `amount` of its size.

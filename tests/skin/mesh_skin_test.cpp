@@ -365,7 +365,7 @@ TEST(MeshSkinFaults, CountTheValuesOfPointLists) {
   MeshArm arm;
   arm.skinDef.points.emplace();
   arm.skinDef.points->fat.edit().assign(3, 0.01f);
-  expectError(arm, "/skin/points/" + std::string(info(SkinQuantity::fat).name),
+  expectError(arm, "/skin/points/fat_m",
               "found 3 values, expected " + std::to_string(arm.rig.points_m.size()));
 }
 

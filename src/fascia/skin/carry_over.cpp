@@ -5,6 +5,7 @@
 
 #include <fascia/math/points.h>
 #include <fascia/skin/grid/grid_skin.h>
+#include <fascia/skin/grid/grid_wrap.h>
 #include <fascia/skin/grid/resample.h>
 
 namespace fascia {
@@ -44,9 +45,10 @@ SkinState onOtherGrid(const Skin& from, const SkinState& state, const Skin& to) 
   return out;
 }
 
-// Whether the same points have strands in both, so that their anchors can be compared.
+// Whether every point hangs on the same flesh in both, so that its strand moves only with that. A
+// grid that was wrapped anew is also tied anew, which is no reason to move it.
 bool sameStrands(const Skin& a, const Skin& b) {
-  return !a.grid() || a.grid()->anchors().anchors().size() == b.grid()->anchors().anchors().size();
+  return !a.grid() || a.parts().gridRest->wrap == b.parts().gridRest->wrap;
 }
 
 template <class Visit>

@@ -218,8 +218,10 @@ void Stage::addKind(const SceneBodyDef& body, const std::string& pointer,
     if (!form.basis) return;
     countNumbers(form.basis->size() * form.basis->dimension());
     const MatterDetail detail = MatterDetail::of(form.basis->degree());
-    shapes_.push_back(
-        std::make_shared<const BodyShape>(BodyDef{form.basis, form.matter(detail), body}));
+    const bool implicit = def_.simulation.scheme == "implicit";
+    const Crushing crushing = implicit ? Crushing::resisted : Crushing::free;
+    shapes_.push_back(std::make_shared<const BodyShape>(
+        BodyDef{form.basis, form.matter(detail), body, crushing}));
     looks_.push_back(lookOf(body, *form.surface));
     surfaces_.push_back(std::move(form.surface));
   }

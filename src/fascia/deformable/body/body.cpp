@@ -23,7 +23,8 @@ void check(const BodyMaterial& material) {
 
 }  // namespace
 
-BodyShape::BodyShape(const BodyDef& def) : basis_(def.basis), material_(def.material) {
+BodyShape::BodyShape(const BodyDef& def)
+    : basis_(def.basis), material_(def.material), crushing_(def.crushing) {
   check(def.material);
   if (!basis_) throw Error("body: found no basis, expected one");
   dimension_ = basis_->dimension(), shapeCount_ = basis_->size();

@@ -14,6 +14,7 @@ struct BodyDef {
   BasisPtr basis;
   Matter matter;
   BodyMaterial material;
+  Crushing crushing = Crushing::free;
 };
 
 // A kind of linear deformable body, constant; any number of bodies of a system may be of one kind.
@@ -89,6 +90,7 @@ class BodyShape {
 
   BasisPtr basis_;
   BodyMaterial material_;
+  Crushing crushing_;
   int dimension_ = 3, shapeCount_ = 0;
   double mass_kg_ = 0, volume_m3_ = 0, size_m_ = 0;
   Vec3 center_m_ = Vec3::Zero();

@@ -92,8 +92,9 @@ double BodyShape::energy(std::span<const double> q) const {
   return withDimension(dimension_, [&](auto d) {
     double sum = 0;
     for (std::size_t i = 0; i < volumes_.size(); ++i)
-      sum += volumes_[i] *
-             strainEnergyDensity(material_, deformationAt<d()>(q.data(), slopes(i), shapeCount_));
+      sum += volumes_[i] * strainEnergyDensity(material_,
+                                               deformationAt<d()>(q.data(), slopes(i), shapeCount_),
+                                               crushing_);
     return sum;
   });
 }
@@ -104,8 +105,8 @@ void BodyShape::addElasticForce(std::span<const double> q, std::span<double> for
   withDimension(dimension_, [&](auto d) {
     for (std::size_t i = 0; i < volumes_.size(); ++i) {
       const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-      addStressForce<d()>(strainStress(material_, F), slopes(i), shapeCount_, -volumes_[i],
-                          force.data());
+      addStressForce<d()>(strainStress(material_, F, crushing_), slopes(i), shapeCount_,
+                          -volumes_[i], force.data());
     }
   });
 }
@@ -118,8 +119,8 @@ void BodyShape::addStiffness(std::span<const double> q, double factor, Curvature
   withDimension(dimension_, [&](auto d) {
     for (std::size_t i = 0; i < volumes_.size(); ++i) {
       const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-      addCongruence<d()>(strainStiffness(material_, F, curvature), slopes(i), shapeCount_,
-                         factor * volumes_[i], H);
+      addCongruence<d()>(strainStiffness(material_, F, curvature, crushing_), slopes(i),
+                         shapeCount_, factor * volumes_[i], H);
     }
   });
 }
@@ -152,11 +153,11 @@ void BodyShape::addDampingForce(std::span<const double> q, std::span<const doubl
     for (std::size_t i = 0; i < volumes_.size(); ++i) {
       const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
       const Mat3 rate = gradientAt<d()>(velocity.data(), slopes(i), shapeCount_);
-      power += volumes_[i] * strainStress(material_, F).cwiseProduct(rate).sum();
+      power += volumes_[i] * strainStress(material_, F, crushing_).cwiseProduct(rate).sum();
     }
     for (std::size_t i = 0; i < volumes_.size(); ++i) {
       const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-      addStressForce<d()>(strainStress(material_, F), slopes(i), shapeCount_,
+      addStressForce<d()>(strainStress(material_, F, crushing_), slopes(i), shapeCount_,
                           -material_.power_damping_s_per_J * power * volumes_[i], force.data());
     }
   });

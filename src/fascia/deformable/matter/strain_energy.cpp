@@ -13,6 +13,10 @@ constexpr double kLeastVolume = 0.2;
 // Goes on so far that what is a thousand times heavier than a body lies on it.
 constexpr double kParabola = 1.0 / 1024;
 
+bool hardens(Crushing crushing, double volume) {
+  return crushing == Crushing::resisted && volume < kLeastVolume;
+}
+
 LogBarrier collapseOf(const BodyMaterial& m) {
   return {kLeastVolume, 4 * m.rigidity_Pa + 2 * m.volume_Pa, kParabola};
 }
@@ -62,20 +66,20 @@ Mat3 cofactors(const Mat3& F) {
   return c;
 }
 
-double strainEnergyDensity(const BodyMaterial& m, const Mat3& F) {
+double strainEnergyDensity(const BodyMaterial& m, const Mat3& F, Crushing crushing) {
   const double J = F.determinant(), growth = J - 1;
   const double density = m.rigidity_Pa * (F.transpose() * F - Mat3::Identity()).squaredNorm() +
                          m.volume_Pa * growth * growth;
-  return J < kLeastVolume ? density + collapseOf(m).value(J) : density;
+  return hardens(crushing, J) ? density + collapseOf(m).value(J) : density;
 }
 
 // By columns, which steps of many bodies do most of the time: F (FᵀF − I) in six scalar products.
-Mat3 strainStress(const BodyMaterial& m, const Mat3& F) {
+Mat3 strainStress(const BodyMaterial& m, const Mat3& F, Crushing crushing) {
   const Vec3 x = F.col(0), y = F.col(1), z = F.col(2);
   const Vec3 yz = y.cross(z), zx = z.cross(x), xy = x.cross(y);  // the cofactors
   const double elastic = 4 * m.rigidity_Pa, J = x.dot(yz);
   double volume = 2 * m.volume_Pa * (J - 1);
-  if (J < kLeastVolume) volume -= collapseOf(m).force(J);
+  if (hardens(crushing, J)) volume -= collapseOf(m).force(J);
   const double shearXY = x.dot(y), shearYZ = y.dot(z), shearZX = z.dot(x);
   Mat3 P;
   P.col(0) = elastic * ((x.squaredNorm() - 1) * x + shearXY * y + shearZX * z) + volume * yz;
@@ -84,7 +88,7 @@ Mat3 strainStress(const BodyMaterial& m, const Mat3& F) {
   return P;
 }
 
-Mat9 strainStiffness(const BodyMaterial& m, const Mat3& F, Curvature curvature) {
+Mat9 strainStiffness(const BodyMaterial& m, const Mat3& F, Curvature curvature, Crushing crushing) {
   Mat9 K = strainRateOperator(F);
   Mat3 strain = F.transpose() * F - Mat3::Identity();
   if (curvature == Curvature::positive) strain = withoutNegativePart(strain);
@@ -96,7 +100,7 @@ Mat9 strainStiffness(const BodyMaterial& m, const Mat3& F, Curvature curvature) 
   const Eigen::Map<const Eigen::Matrix<double, 9, 1>> c(cofactor.data());
   K += 2 * m.volume_Pa * c * c.transpose();
   const double J = F.col(0).dot(cofactor.col(0));
-  const bool squeezed = J < kLeastVolume;
+  const bool squeezed = hardens(crushing, J);
   if (squeezed) K += collapseOf(m).curvature(J) * c * c.transpose();
   if (curvature == Curvature::exact) {
     const double pressure = squeezed ? collapseOf(m).force(J) : 0;
