@@ -36,10 +36,11 @@ TEST(TrackAllocation, SamplingMakesNoneAfterWarmUp) {
   blend.add(plain);
   blend.add(drag, {0.5, 0.5});
   ReachSource reach(skeleton, figure.flesh, blend);
-  reach.add({figure.joint("shoulder"), figure.joint("wrist")},
-            [](double time_s) { ReachGoal goal;
+  reach.add({figure.joint("shoulder"), figure.joint("wrist")}, [](double time_s) {
+    ReachGoal goal;
     goal.position_m = Vec3(0.4, 1.5, 0.1 * time_s);
-    return goal; });
+    return goal;
+  });
   PostureSample pushed, out;
   const Posture former = skeleton.restPosture();
   const auto frame = [&](int f) {
