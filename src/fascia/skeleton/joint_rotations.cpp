@@ -60,8 +60,10 @@ void Skeleton::resolveRotations(std::span<const double> near, Posture& posture) 
     return !turn.joint.valid() || turn.joint.index() >= jointCount() || !finite(turn);
   });
   std::ranges::sort(turns, {}, &JointRotation::joint);
-  const auto doubled = std::ranges::unique(turns, {}, &JointRotation::joint);
-  turns.erase(doubled.begin(), doubled.end());
+  const auto sameJoint = [](const JointRotation& a, const JointRotation& b) {
+    return a.joint == b.joint;
+  };
+  turns.erase(std::unique(turns.begin(), turns.end(), sameJoint), turns.end());
   std::erase_if(turns, [&](JointRotation& turn) {
     turn.rotation.normalize();
     return !resolveRotation(turn, near, posture);

@@ -129,6 +129,7 @@ void readGltfMotions(const GltfDocument& document, const GltfScene& scene, const
   }
   const std::vector<int> above = nodesAboveJoints(scene, rig);
   std::vector<MotionSpan> spans;
+  spans.reserve(clips.size());
   for (const GltfClip& clip : clips)
     spans.push_back({clip.name, clip.end_s() - clip.start_s(), clip.naturalRate_hz()});
   const std::vector<MotionPlan> plans = planMotions(spans, above.size(), model.notes);
