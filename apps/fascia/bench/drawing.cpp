@@ -69,6 +69,7 @@ struct LookCost {
 // Moments spread over a film.
 std::vector<double> momentsOf(const Film& film, int count) {
   std::vector<double> times_s;
+  times_s.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     times_s.push_back(film.start_s() + (film.end_s() - film.start_s()) * i / count);
   return times_s;
