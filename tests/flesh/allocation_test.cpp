@@ -8,15 +8,7 @@ namespace {
 
 TEST(Allocation, PosingMakesNoneAfterWarmUp) {
   const test::Arm arm;
-  MotionDef motion;
-  motion.name = "flex";
-  motion.duration_s = 2;
-  motion.loop = true;
-  motion.tracks = {{TrackDef::Target::joint, "elbow", "rz", {{0, 0}, {1, 2}}},
-                   {TrackDef::Target::solid, "thumb", "bend.angle_rad", {{0, 0.2}, {1, 0.9}}}};
-  Diagnostics diagnostics;
-  const BoundClip clip = bindMotion(motion, arm.skeleton, arm.flesh, {}, "/m", diagnostics);
-  ASSERT_TRUE(diagnostics.ok());
+  const BoundClip clip = test::flexClip(arm);
 
   Posture posture;
   PosedSkeleton skeleton;

@@ -131,4 +131,18 @@ inline Vec3 at(const VectorArray& a, std::size_t i) {
   return {a.x[i], a.y[i], a.z[i]};
 }
 
+// Bends the elbow and the thumb, to and fro.
+inline BoundClip flexClip(const Arm& arm) {
+  MotionDef motion;
+  motion.name = "flex";
+  motion.duration_s = 2;
+  motion.loop = true;
+  motion.tracks = {{TrackDef::Target::joint, "elbow", "rz", {{0, 0}, {1, 2}}},
+                   {TrackDef::Target::solid, "thumb", "bend.angle_rad", {{0, 0.2}, {1, 0.9}}}};
+  Diagnostics diagnostics;
+  BoundClip clip = bindMotion(motion, arm.skeleton, arm.flesh, {}, "/m", diagnostics);
+  diagnostics.throwIfErrors();
+  return clip;
+}
+
 }  // namespace fascia::test

@@ -9,22 +9,9 @@
 namespace fascia {
 namespace {
 
-BoundClip flexClip(const test::Arm& arm) {
-  MotionDef motion;
-  motion.name = "flex";
-  motion.duration_s = 2;
-  motion.loop = true;
-  motion.tracks = {{TrackDef::Target::joint, "elbow", "rz", {{0, 0}, {1, 2}}},
-                   {TrackDef::Target::solid, "thumb", "bend.angle_rad", {{0, 0.2}, {1, 0.9}}}};
-  Diagnostics diagnostics;
-  BoundClip clip = bindMotion(motion, arm.skeleton, arm.flesh, {}, "/m", diagnostics);
-  diagnostics.throwIfErrors();
-  return clip;
-}
-
 TEST(ClipSource, SaysWhatTheClipSaysBitForBit) {
   const test::Arm arm;
-  const BoundClip clip = flexClip(arm);
+  const BoundClip clip = test::flexClip(arm);
   const ClipSource source(arm.skeleton, clip);
   EXPECT_EQ(source.info().name, "flex");
   EXPECT_EQ(source.info().duration_s, 2);

@@ -1,7 +1,6 @@
 #include <fascia/skin/skin_stepper.h>
 
 #include <algorithm>
-#include <cassert>
 #include <chrono>
 #include <cmath>
 
@@ -83,9 +82,8 @@ SkinStepper::~SkinStepper() = default;
 
 void SkinStepper::advance(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
                           SkinStats& stats) {
-  assert(state.position.size() == skin_.topology().storage());
   if (!state.ready) begin(poses.at(start_s), state);
-  assert(state.velocity.size() == skin_.topology().storage());
+  FASCIA_ASSERT(state.velocity.size() == skin_.topology().storage(), "begin() filled the state");
   const double span = end_s - start_s;
   FASCIA_ASSERT(span > 0, "time goes on");
   FASCIA_ASSERT(state.position.size() == skin_.topology().storage(), "the state is of this skin");
