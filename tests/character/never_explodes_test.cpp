@@ -114,7 +114,10 @@ TEST(NeverExplodes, WithAnyIntegratorOfTheLibrary) {
       def.skin->columns = def.skin->rows = 8;
       def.motions = {test::teleport(2 * frame, 2, kPi / 2, 2)};
       def.simulation.integrator = integrator.name;
-      def.simulation.min_step_s = 1e-4;
+      if (integrator.name == "euler") {  // refuses: without damping it swings up at any step
+        EXPECT_THROW(Character{def}, Error);
+        continue;
+      }
       expectSound(test::simulate(Character(def), 0, frame, 6),
                   std::string(integrator.name) + " " + describe(frame, 150, 4));
     }
