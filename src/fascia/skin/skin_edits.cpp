@@ -11,6 +11,9 @@ namespace {
 
 // Beyond so many radii nothing of a brush is left in a float: exp(-r²/2) is below 1e-49.
 constexpr double kBrushReach = 15;
+// Beyond so many radii less than a hundred-millionth of a millionth of a brush is left: 2⁻²⁵ of
+// this share of its amount, half of what a float of that size can hold.
+constexpr double kFaintBrush = 8, kLostIn = 1e-6;
 // Handed to a thread at once: fewer cost more to hand out than to do.
 constexpr std::size_t kPointsPerChunk = 1024;
 
@@ -37,8 +40,9 @@ float shareOf(const SkinRegionDef& region, SolidId solid, int joint, const EditP
     return share;
   }
   if (!region.solid.empty()) return p.solid == solid ? 1.f : 0.f;
-  return static_cast<float>(inRange(p.u, region.u_min, region.u_max, region.feather, true) *
-                            inRange(p.v, region.v_min, region.v_max, region.feather, false));
+  const double along = inRange(p.v, region.v_min, region.v_max, region.feather, false);
+  if (along == 0) return 0;
+  return static_cast<float>(inRange(p.u, region.u_min, region.u_max, region.feather, true) * along);
 }
 
 int findRigJoint(const RiggedModel& rig, const std::string& name) {
@@ -133,6 +137,8 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
       const EditPoint& p = points[i];
       const double r = (pointAt(rest, p.point) - *center).norm() / std::max(1e-9, brush.radius_m);
       if (r > kBrushReach) return;
+      // What is left of it there is lost in the rounding of what it is added to.
+      if (r > kFaintBrush && values[p.point] > kLostIn * std::abs(brush.amount)) return;
       values[p.point] = std::max(
           0.f, values[p.point] + static_cast<float>(brush.amount * std::exp(-0.5 * r * r)));
     });

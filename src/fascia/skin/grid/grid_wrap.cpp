@@ -106,6 +106,20 @@ VectorArray waysOfMatter(const GridWrap& wrap, const FollowInput& input,
   return way;
 }
 
+// Whether all matter is where it was: then it has gone no way.
+bool isAsWrapped(const GridWrap& wrap, const FollowInput& input) {
+  for (std::size_t s = 0; s < wrap.flesh.solidCount(); ++s) {
+    const SolidId id(static_cast<std::int64_t>(s));
+    const Solid &was = wrap.posedFlesh.solid(id), &is = input.posedFlesh.solid(id);
+    if (wrap.flesh.def(id).solid != input.flesh.def(id).solid ||
+        wrap.posedFlesh.frame(id) != input.posedFlesh.frame(id))
+      return false;
+    for (std::size_t i = 0; i < was.parameterCount(); ++i)
+      if (was.parameter(static_cast<int>(i)) != is.parameter(static_cast<int>(i))) return false;
+  }
+  return true;
+}
+
 void setEndWays(const GridWrap& wrap, const FollowInput& input, VectorArray& way) {
   const GridLayout& g = wrap.layout;
   for (int e = 0; e < 2; ++e) {
@@ -224,7 +238,8 @@ void placeIn(const PosedFlesh& flesh, FollowedGrid& grid) {
 FollowedGrid follow(const GridWrap& wrap, const FollowInput& input) {
   const GridLayout& g = wrap.layout;
   FollowedGrid out = followMatter(wrap, input.flesh);
-  VectorArray way = waysOfMatter(wrap, input, out.placements);
+  VectorArray way = isAsWrapped(wrap, input) ? VectorArray(wrap.rest.size())
+                                             : waysOfMatter(wrap, input, out.placements);
   const bool matterMoves = anyWay(way);
   setEndWays(wrap, input, way);
   const double fatChange_m = input.fat_m - wrap.fat_m;
