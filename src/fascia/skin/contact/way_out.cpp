@@ -26,7 +26,7 @@ struct Plane {
 };
 
 struct Measure {
-  const Field& field;
+  const DistanceField& field;
   std::span<const std::int32_t> solids;
   double distance_m;  // to keep
 
@@ -127,7 +127,7 @@ Vec3 straightOut(const Measure& measure, const Vec3& from) {
 
 }  // namespace
 
-Vec3 leaveAll(const Field& field, std::span<const std::int32_t> solids, double fat_m,
+Vec3 leaveAll(const DistanceField& field, std::span<const std::int32_t> solids, double fat_m,
               const Vec3& from) {
   const Measure measure{field, solids, fat_m + kClear_m};
   std::vector<Plane> planes;

@@ -12,7 +12,7 @@ namespace fascia {
 // hundreds of turns, in a pocket that solids close it never ends. Costs as much as testing some
 // dozens of points. Where the solids' distances are exact and the solids convex, one step of the
 // first kind suffices.
-Vec3 leaveAll(const Field& field, std::span<const std::int32_t> solids, double fat_m,
+Vec3 leaveAll(const DistanceField& field, std::span<const std::int32_t> solids, double fat_m,
               const Vec3& from);
 
 }  // namespace fascia

@@ -139,7 +139,8 @@ bool isNear(const Box& a, const Box& b, double reach_m) {
 }
 
 // Points that lie together to a distance of the fat from every solid.
-void pushOut(const Field& field, std::span<const Box> boxes, float fat_m, const Vectors& points) {
+void pushOut(const DistanceField& field, std::span<const Box> boxes, float fat_m,
+             const Vectors& points) {
   std::array<float, kPushedTogether> distance;
   std::array<std::array<float, kPushedTogether>, 3> normal;
   const Vectors normals{normal[0].data(), normal[1].data(), normal[2].data(), points.count};
@@ -164,7 +165,7 @@ void pushOut(const Field& field, std::span<const Box> boxes, float fat_m, const 
   }
 }
 
-void pushRowsOut(const GridLayout& g, const Field& field, double fat_m, VectorArray& r) {
+void pushRowsOut(const GridLayout& g, const DistanceField& field, double fat_m, VectorArray& r) {
   std::vector<Box> boxes;
   for (std::size_t s = 0; s < field.solidCount(); ++s)
     boxes.push_back(field.bounds(SolidId(static_cast<std::int64_t>(s))));
