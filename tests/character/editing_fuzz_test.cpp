@@ -52,7 +52,8 @@ class EditedRun {
     CharacterState state = carryOver(character_, state_, edited);
     const bool sameGrid = edited.skin()->pointCount() == character_.skin()->pointCount() &&
                           edited.skin()->grid()->columns() == character_.skin()->grid()->columns();
-    if (sameGrid && !(wrapOf(edited) == wrapOf(character_) && fleshWentFar(state))) {
+    if (sameGrid &&
+        !(wrapOf(edited) == wrapOf(character_) && fleshWentFar(state, edited.skin()->size_m()))) {
       EXPECT_TRUE(test::sameBits(state.skin.position, state_.skin.position));
       EXPECT_TRUE(test::sameBits(state.skin.velocity, state_.skin.velocity));
     }
@@ -76,13 +77,13 @@ class EditedRun {
 
  private:
   // A skin goes along with an edit that moves what it is tied to by more than this.
-  bool fleshWentFar(const CharacterState& edited) const {
+  bool fleshWentFar(const CharacterState& edited, double size_m) const {
     const VectorArray &now = edited.skin.surroundings.anchor,
                       &before = state_.skin.surroundings.anchor;
     double farthest_m = 0;
     for (std::size_t k = 0; k < now.size(); ++k)
       farthest_m = std::max(farthest_m, (pointAt(now, k) - pointAt(before, k)).norm());
-    return farthest_m > 0.05 * character_.skin()->size_m();
+    return farthest_m > 0.05 * size_m;
   }
   static const GridWrap* wrapOf(const Character& c) {
     return c.skin()->parts().gridRest->wrap.get();
