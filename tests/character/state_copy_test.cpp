@@ -4,6 +4,7 @@
 #include <fascia/base/random.h>
 
 #include "examples.h"
+#include "fleshed_rig.h"
 #include "support/assets.h"
 
 // A state is the whole state: copies, which have none of the original's scratch memory, go on bit
@@ -12,25 +13,25 @@
 namespace fascia {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 60;
-constexpr int kFrames = 12;
+constexpr double kCopiedFrame_s = 1.0 / 60;
+constexpr int kCopiedFrames = 12;
 
 void expectCopiesToGoOn(const Character& character, Random& random, const std::string& what) {
-  const auto motion = static_cast<std::size_t>(random.uniform(0, 1) *
-                                               static_cast<double>(character.motionCount()) * 0.999);
+  const auto motion = static_cast<std::size_t>(
+      random.uniform(0, 1) * static_cast<double>(character.motionCount()) * 0.999);
   const PostureSource& source = character.source(static_cast<int>(motion));
   CharacterState state = initialState(character, source);
   SkinStats stats;
   const int before = 3 + static_cast<int>(random.uniform(0, 25));
-  for (int f = 0; f < before; ++f) advance(character, source, kFrame_s, state, stats);
+  for (int f = 0; f < before; ++f) advance(character, source, kCopiedFrame_s, state, stats);
   CharacterState copy = state;
   ASSERT_EQ(hashOf(character, copy), hashOf(character, state)) << what;
-  for (int f = 0; f < kFrames; ++f) {
+  for (int f = 0; f < kCopiedFrames; ++f) {
     {
       const ThreadLimit limit(1 + f % 3);
-      advance(character, source, kFrame_s, copy, stats);
+      advance(character, source, kCopiedFrame_s, copy, stats);
     }
-    advance(character, source, kFrame_s, state, stats);
+    advance(character, source, kCopiedFrame_s, state, stats);
     ASSERT_EQ(hashOf(character, copy), hashOf(character, state))
         << what << ", motion " << motion << ", " << f + 1 << " frames after the " << before << "th";
   }
@@ -61,7 +62,7 @@ TEST(StateCopies, OfRigsGoOnLikeTheOriginal) {
   Random random(13);
   for (const bool simulate : {false, true}) {
     for (const bool soft : {false, true}) {
-      CharacterDef def = fleshOut(readRig(*file), {}).def;
+      CharacterDef def = test::fleshOut(file->string());
       def.skin->pose.simulate = simulate;
       if (soft) def.flesh.solids.front().soft.emplace();
       expectCopiesToGoOn(Character(def), random, soft ? "soft fox" : "fox");

@@ -74,6 +74,51 @@ TEST(FleshContact, LeavesNoPointInsideOfAnySolid) {
   }
 }
 
+// Out of one solid after the other takes hundreds of turns here: planes that meet in an angle of a
+// few degrees, so that every way out of the one leads back into the other.
+TEST(FleshContact, BringsPointsOutOfNarrowCreases) {
+  const RigidSolids flesh = RigidSolids()
+                                .addSphere(Vec3(-3.01, 0, 0), 3)
+                                .addSphere(Vec3(3.01, 0, 0), 3)
+                                .addSphere(Vec3(0, 0.2, 3), 2.8);
+  Cloud cloud(0.3, 0.02);
+  ASSERT_GT(cloud.deepest(flesh), 0.05);
+  cloud.project(flesh);
+  EXPECT_LE(cloud.deepest(flesh), 1e-5);
+}
+
+// Six spheres close a pocket: no way out of all that touch a point there is a short one.
+TEST(FleshContact, BringsPointsOutOfClosedPockets) {
+  RigidSolids flesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-0.25, 0.25}) flesh.addSphere(Vec3::Unit(axis) * side, 0.2);
+  for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(1, 1, -1),
+                             Vec3(-1, -1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, -1)})
+    flesh.addSphere(0.15 * corner, 0.2);
+  Cloud cloud(0.1, 0.06);
+  ASSERT_GT(cloud.deepest(flesh), 0.05);
+  cloud.project(flesh);
+  EXPECT_LE(cloud.deepest(flesh), 1e-5);
+}
+
+// Distances that are right to the first order only, as those of deformed solids are.
+class RoughSolids final : public RigidSolids {
+ public:
+  void evaluate(SolidId id, ConstVectors points, float* distance_m, Vectors normal) const override {
+    RigidSolids::evaluate(id, points, distance_m, normal);
+    for (std::size_t i = 0; i < points.count; ++i) distance_m[i] += distance_m[i] * distance_m[i];
+  }
+};
+
+TEST(FleshContact, LooksAgainAfterALongWayOutOfOneSolid) {
+  RoughSolids flesh;
+  flesh.addSphere(Vec3::Zero(), 0.3);
+  Cloud cloud(0.25, 0);
+  ASSERT_GT(cloud.deepest(flesh), 0.05);
+  cloud.project(flesh);
+  EXPECT_LE(cloud.deepest(flesh), 1e-5);
+}
+
 TEST(FleshContact, MeasuresTheDepthBelowTheSurfaceOfTheFat) {
   const RigidSolids flesh = RigidSolids().addSphere(Vec3::Zero(), 0.3);
   for (const double fat : {0.0, 0.05}) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,9 +53,14 @@ struct EditPoint {
   SolidId solid;                          // that the point is tied to; invalid: none
   const PointWeights* weights = nullptr;  // of an imported mesh, by joints of the rig
 };
+// Only quantities that `changes` are touched.
+using QuantityMask = std::array<bool, kSkinQuantities>;
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
                     std::span<const EditPoint> points, const RiggedModel* rig,
-                    const VectorArray& rest, SkinQuantities& quantities);
+                    const VectorArray& rest, const QuantityMask& changes,
+                    SkinQuantities& quantities);
+// Where a brush is in the rest posture; none if its joint is not found.
+std::optional<Vec3> brushCenter(const SkinBrushDef& brush, const SkinBase& base);
 
 // Fills what stepping needs to know of the points from their quantities and areas (m²).
 // `tied`: storage indices of the points with a tissue strand.

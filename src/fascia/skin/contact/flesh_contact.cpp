@@ -6,6 +6,7 @@
 
 #include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
+#include <fascia/skin/contact/way_out.h>
 
 namespace fascia {
 namespace {
@@ -13,6 +14,9 @@ namespace {
 // Bound of how far a point goes when pushed out, over the sum of the depths: along a crease's flank
 // the way is longer than the depth.
 constexpr float kPushMargin = 8;
+// A solid's distance is an estimate whose error grows with the square of the depth: so far out of
+// it a point may be pushed without looking again.
+constexpr float kSure_m = 1e-3f;
 // Gap of a block and a solid that have not been tested yet.
 constexpr float kUnknown = -1e30f;
 // Blocks handed to a thread at once; smaller skins are not worth waking threads for.
@@ -57,16 +61,44 @@ struct BlockTest {
     return deepest;
   }
 
-  // Like visit(true), until no point is inside any solid or `passes` are used up. Returns the sum
-  // of the passes' depths.
+  // Like visit(true), until no point is inside any solid; what `passes` have not brought out leaves
+  // all solids at once. Returns a bound of how far points went: the sum of the passes' depths.
   float leaveSolids(int passes, float retest_m) {
     float moved = 0;
     for (int pass = 0; pass < passes; ++pass) {
       const float depth = visit(true);
       moved += depth;
-      if (nearbyCount == 1 || !mustRetest(retest_m)) break;
+      const bool again =
+          (nearbyCount > 1 && mustRetest(retest_m)) || (depth > kSure_m && depthLeft() > retest_m);
+      if (!again) return moved;
     }
-    return moved;
+    return moved + leaveTogether(retest_m);
+  }
+
+  float leaveTogether(float retest_m) {
+    float farthest = 0;
+    for (std::size_t l = 0; l < block.count; ++l) {
+      if (!(lanes.pushed[l] > retest_m)) continue;
+      const Eigen::Vector3f from(lanes.place.x[l], lanes.place.y[l], lanes.place.z[l]);
+      const Eigen::Vector3f to =
+          leaveAll(field, nearby.first(nearbyCount), double{lanes.fat[l]}, from.cast<double>())
+              .cast<float>();
+      lanes.place.x[l] = to.x(), lanes.place.y[l] = to.y(), lanes.place.z[l] = to.z();
+      farthest = std::max(farthest, (to - from).norm());
+    }
+    return farthest + visit(true);
+  }
+
+  // How deep the deepest point is where it has come to; changes nothing that visit() found.
+  float depthLeft() const {
+    float deepest = 0;
+    for (const std::int32_t s : nearby.first(nearbyCount)) {
+      field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
+                     lanes.normal.view(block.count));
+      for (std::size_t l = 0; l < block.count; ++l)
+        deepest = std::max(deepest, lanes.fat[l] - lanes.distance[l]);
+    }
+    return deepest;
   }
 
   // Whether a point that was pushed out of one solid may have been pushed into another.

@@ -28,7 +28,8 @@ class SkinContact {
   // Projects points out of the solids exactly, removes the approaching part of their velocity
   // relative to the flesh, and writes each point's half space (normal, offset, flesh velocity) for
   // the steps that follow: the nearest solid within `reach_m`. A point in several solids is
-  // projected in turn until it is outside of all, or kPasses are used up.
+  // projected in turn until it is outside of all; what kPasses do not bring out (a narrow crease, a
+  // pocket that solids close) leaves all of them at once.
   virtual Result project(const MovingField& field, const PointModel& points, float reach_m,
                          float restitution, VectorArray& position, VectorArray& velocity,
                          PointSurroundings& around) = 0;
