@@ -255,10 +255,14 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   if (!skin_.points().slideLimit.empty()) limitSlide(state);
   skin_.topology().complete(state.position);
   // Skin against itself comes before the flesh, which has the last word.
-  if (skin_.selfContact())
+  if (skin_.selfContact()) {
+    if (!state.surroundings.fleshNormal.x.empty())
+      selfContact_.flatten(skin_.points(), state.surroundings.fleshNormal, state.position,
+                           state.velocity);
     selfContact_.separate(skin_.points(), kSelfReach * static_cast<float>(skin_.size_m()),
                           state.position, state.velocity, static_cast<float>(duration_s),
                           state.surroundings.fleshNormal);
+  }
   stretchLimit_.apply(skin_.points(), state.position, state.velocity);
   // More than the way that the fastest point goes until the next test.
   const auto size = static_cast<float>(skin_.size_m());

@@ -28,6 +28,10 @@ constexpr float kMostWay = 0.25f;
 constexpr float kMostRough = 0.35f;
 // Cosine of a contact's normal and the flesh's from which on it pushes off the flesh.
 constexpr float kMostOutward = 0.2f;
+// Skin that lies face down goes this share of the way to its neighbours' mean, so often.
+constexpr float kFlatShare = 0.5f;
+constexpr int kFlatPasses = 6;
+constexpr float kMostFlatWay = 1;  // edges around it, per interval
 // Within this share of the gap sheets touch: approaching is over.
 constexpr float kTouching = 0.05f;
 // By how many gaps another sheet must be more urgent than the flesh to take its half space: less
@@ -257,14 +261,19 @@ void SelfContact::keepSmooth(VectorArray& position) {
     if (length > most) put(change_, k, (most / length - 1) * now);
   });
   forEachMoved([&](std::size_t k) {
-    const Eigen::Vector3f change = floatPointAt(change_, k), before = floatPointAt(start_, k);
+    const Eigen::Vector3f change = floatPointAt(change_, k);
     put(change_, k, Eigen::Vector3f::Zero());
-    Eigen::Vector3f way = floatPointAt(position, k) + change - before;
-    const float most = kMostWay * model_->edge_m[k], length = way.norm();
-    if (!(length > 0)) return;
-    if (length > most) way *= most / length;
-    put(position, k, before + way);
+    put(position, k, floatPointAt(position, k) + change);
+    goNoFarther(k, kMostWay, position);
   });
+}
+
+// From where the point was at the start.
+void SelfContact::goNoFarther(std::size_t k, float edges, VectorArray& position) const {
+  const Eigen::Vector3f before = floatPointAt(start_, k);
+  const Eigen::Vector3f way = floatPointAt(position, k) - before;
+  const float most = edges * model_->edge_m[k], length = way.norm();
+  if (length > most) put(position, k, before + most / length * way);
 }
 
 void SelfContact::removeApproach(const PointModel& points, const VectorArray& position,
@@ -288,6 +297,51 @@ void SelfContact::placePlane(Contact& c, const VectorArray& position,
   c.planeVelocity = own + c.share * (blend(velocity, c.corners, c.weights) - own);
   c.offset_m = c.normal.dot(floatPointAt(position, c.point)) -
                c.share * (c.distance(position) - c.keep_m) - (1 - c.strength) * model_->gap_m;
+}
+
+std::size_t SelfContact::flatten(const PointModel& points, const VectorArray& fleshNormal,
+                                 VectorArray& position, VectorArray& velocity) {
+  std::size_t moved = 0;
+  start_ = position;
+  for (int pass = 0; pass < kFlatPasses; ++pass) {
+    findFaceDown(points, fleshNormal, position);
+    if (faceDown_.empty()) break;
+    moved = std::max(moved, faceDown_.size());
+    for (VectorArray* values : {&position, &velocity}) {
+      for (const std::uint32_t k : faceDown_)
+        put(change_, k, -kFlatShare * standingOut(*values, k));
+      for (const std::uint32_t k : faceDown_) {
+        put(*values, k, floatPointAt(*values, k) + floatPointAt(change_, k));
+        put(change_, k, Eigen::Vector3f::Zero());
+      }
+    }
+    for (const std::uint32_t k : faceDown_) goNoFarther(k, kMostFlatWay, position);
+  }
+  return moved;
+}
+
+// The free corners of triangles that look into the flesh, and the free points beside them; each
+// once, increasing.
+void SelfContact::findFaceDown(const PointModel& points, const VectorArray& fleshNormal,
+                               const VectorArray& position) {
+  faceDown_.clear();
+  for (std::size_t t = 0; t < model_->triangleCount(); ++t) {
+    const auto [a, b, c] = model_->triangle(t);
+    const Eigen::Vector3f outward =
+        floatPointAt(fleshNormal, a) + floatPointAt(fleshNormal, b) + floatPointAt(fleshNormal, c);
+    const Eigen::Vector3f at = floatPointAt(position, a);
+    const Eigen::Vector3f normal =
+        (floatPointAt(position, b) - at).cross(floatPointAt(position, c) - at);
+    if (normal.dot(outward) >= 0) continue;
+    for (const std::uint32_t corner : {a, b, c}) {
+      faceDown_.push_back(corner);
+      const auto beside = model_->neighbors[corner];
+      faceDown_.insert(faceDown_.end(), beside.begin(), beside.end());
+    }
+  }
+  std::ranges::sort(faceDown_);
+  faceDown_.erase(std::ranges::unique(faceDown_).begin(), faceDown_.end());
+  std::erase_if(faceDown_, [&](std::uint32_t k) { return points.free[k] == 0; });
 }
 
 void SelfContact::writeHalfSpaces(const VectorArray& position, const VectorArray& velocity,

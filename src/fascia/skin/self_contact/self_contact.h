@@ -32,6 +32,12 @@ class SelfContact {
   Result separate(const PointModel& points, float reach_m, VectorArray& position,
                   VectorArray& velocity, float interval_s = 1.f / 60,
                   const VectorArray& fleshNormal = {});
+  // Before `separate`: points of triangles that lie face down on the flesh, and of those beside
+  // them, move towards their neighbours' mean until such skin lies flat again. In a crease there is
+  // less room than skin; it is to be pressed together there, not crumpled. Other points keep every
+  // bit. Returns how many points were moved.
+  std::size_t flatten(const PointModel& points, const VectorArray& fleshNormal,
+                      VectorArray& position, VectorArray& velocity);
   // After `separate` and FleshContact::project: half spaces of contacts that are more urgent than
   // the flesh's in `around` replace those.
   void writeHalfSpaces(const VectorArray& position, const VectorArray& velocity, float interval_s,
@@ -75,7 +81,10 @@ class SelfContact {
   void forEachMoved(const Visit& visit) const;
   Eigen::Vector3f standingOut(const VectorArray& position, std::size_t k) const;
   void placePlane(Contact& c, const VectorArray& position, const VectorArray& velocity) const;
+  void goNoFarther(std::size_t k, float edges, VectorArray& position) const;
   void forget();
+  void findFaceDown(const PointModel& points, const VectorArray& fleshNormal,
+                    const VectorArray& position);
 
   const SelfContactModel* model_ = nullptr;
   SurfaceSearch search_;
@@ -87,7 +96,8 @@ class SelfContact {
   std::vector<std::uint8_t> hasContact_;
   FloatArray pushingMass_;  // of the points that push this one
   VectorArray change_;
-  VectorArray start_;  // positions before anything was moved
+  VectorArray start_;                    // positions before anything was moved
+  std::vector<std::uint32_t> faceDown_;  // points
 };
 
 }  // namespace fascia
