@@ -115,22 +115,28 @@ void RestSurface::addSamples(const RiggedModel& model, std::uint32_t triangle, d
   }
 }
 
-// Every sample sends a dozen rays, and each costs what it crosses. A figure is crossed a few times;
-// where thousands of triangles lie in one another, fewer samples must do.
+// Every sample sends a dozen rays, and each costs what it may cross. A line through the figure
+// meets as many of the triangles' boxes as their area is of the whole box' (Cauchy): a few. Where
+// thousands of triangles lie in one another, fewer samples must do.
 void RestSurface::thinOutCrowd() {
-  constexpr std::size_t kProbes = 64;
-  constexpr double kMostCrossings = 5e5;  // of a ray of each sample: a figure has half at most
-  const std::size_t step = std::max<std::size_t>(1, samples_.size() / kProbes);
-  std::vector<TriangleHierarchy::Hit> hits;
-  std::size_t probes = 0, crossings = 0;
-  for (std::size_t i = 0; i < samples_.size(); i += step, ++probes) {
-    hierarchy_.allHits(samples_[i].position_m, voters()[i % voters().size()], 1e150, hits);
-    crossings += hits.size();
+  constexpr double kMostMeetings = 5e5;  // of all samples' rays; figures have a third
+  constexpr std::size_t kLeastSamples = 200;
+  const auto area = [](const Box& box) {
+    const Vec3 size = box.size();
+    return size.x() * size.y() + size.y() * size.z() + size.z() * size.x();
+  };
+  Box whole;
+  double sum_m2 = 0;
+  for (const auto& t : mesh_.triangles) {
+    Box box;
+    for (const std::uint32_t corner : t) box.add(mesh_.positions[corner].cast<double>());
+    sum_m2 += area(box);
+    whole.add(box);
   }
-  if (probes == 0) return;
-  const double all = static_cast<double>(crossings) / static_cast<double>(probes) *
-                     static_cast<double>(samples_.size());
-  const auto stride = static_cast<std::size_t>(std::ceil(all / kMostCrossings));
+  const double meetings = sum_m2 / std::max(area(whole), 1e-300);
+  const double wanted = meetings * static_cast<double>(samples_.size()) / kMostMeetings;
+  const double most = static_cast<double>(samples_.size()) / static_cast<double>(kLeastSamples);
+  const auto stride = static_cast<std::size_t>(std::ceil(std::clamp(wanted, 0.0, most)));
   if (stride < 2) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < samples_.size(); i += stride, ++kept) {

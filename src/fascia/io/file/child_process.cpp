@@ -54,7 +54,7 @@ pid_t spawn(const std::string& path, const std::vector<std::string>& arguments, 
   posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO + 1);
+  if (output >= 0) posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO + 1);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   setSignals(attributes);

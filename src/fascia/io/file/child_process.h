@@ -14,9 +14,10 @@ namespace fascia {
 class ChildProcess {
  public:
   // Empty if there is no such program in PATH. arguments: without the program's own name. `output`:
-  // an open file, which the program finds as kOutputPath.
+  // an open file, which the program finds as kOutputPath; -1: none.
   static std::optional<ChildProcess> start(const std::string& program,
-                                           const std::vector<std::string>& arguments, int output);
+                                           const std::vector<std::string>& arguments,
+                                           int output = -1);
   static constexpr const char* kOutputPath = "/proc/self/fd/3";
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
