@@ -116,10 +116,11 @@ void RestSurface::addSamples(const RiggedModel& model, std::uint32_t triangle, d
 }
 
 // Every sample sends a dozen rays, and each costs what it may cross. A line through the figure
-// meets as many of the triangles' boxes as their area is of the whole box' (Cauchy): a few. Where
-// thousands of triangles lie in one another, fewer samples must do.
+// meets as many of the triangles' boxes as their area is of the whole box' (Cauchy): one to four in
+// figures. Where triangles lie in one another, so do the hierarchy's boxes, and fewer samples must
+// do: the square, as rays cost more and tell less.
 void RestSurface::thinOutCrowd() {
-  constexpr double kMostMeetings = 5e5;  // of all samples' rays; figures have a third
+  constexpr double kUsualMeetings = 20;  // hair in many layers, still
   constexpr std::size_t kLeastSamples = 200;
   const auto area = [](const Box& box) {
     const Vec3 size = box.size();
@@ -134,7 +135,7 @@ void RestSurface::thinOutCrowd() {
     whole.add(box);
   }
   const double meetings = sum_m2 / std::max(area(whole), 1e-300);
-  const double wanted = meetings * static_cast<double>(samples_.size()) / kMostMeetings;
+  const double wanted = std::pow(meetings / kUsualMeetings, 2);
   const double most = static_cast<double>(samples_.size()) / static_cast<double>(kLeastSamples);
   const auto stride = static_cast<std::size_t>(std::ceil(std::clamp(wanted, 0.0, most)));
   if (stride < 2) return;
