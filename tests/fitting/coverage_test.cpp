@@ -71,7 +71,7 @@ TEST(RestSurface, OfACrowdHasFewerSamplesOfTheSameArea) {
   const RestSurface one(ball(), {});
   EXPECT_GT(one.samples().size(), 2000u);
   EXPECT_LT(many.samples().size(), 600u);
-  EXPECT_GT(many.samples().size(), 100u);
+  EXPECT_GT(many.samples().size(), 20u);  // the others are hidden
   double area_m2 = 0;
   for (const SurfaceSample& sample : many.samples()) area_m2 += sample.area_m2;
   EXPECT_NEAR(area_m2 / many.area_m2() + many.hiddenShare(), 1, 0.1);

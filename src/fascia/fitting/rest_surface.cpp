@@ -6,6 +6,7 @@
 
 #include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
+#include <fascia/base/random.h>
 
 namespace fascia {
 namespace {
@@ -139,11 +140,16 @@ void RestSurface::thinOutCrowd() {
   const double most = static_cast<double>(samples_.size()) / static_cast<double>(kLeastSamples);
   const auto stride = static_cast<std::size_t>(std::ceil(std::clamp(wanted, 0.0, most)));
   if (stride < 2) return;
+  // Any one out of each row of neighbours: always the first would fall in step with rings of a
+  // mesh.
+  Random random(1);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < samples_.size(); i += stride, ++kept) {
-    samples_[kept] = samples_[i];
-    samples_[kept].area_m2 *= static_cast<double>(stride);
-    sampleTriangle_[kept] = sampleTriangle_[i];
+    const std::size_t row = std::min(stride, samples_.size() - i);
+    const std::size_t chosen = i + random.next() % row;
+    samples_[kept] = samples_[chosen];
+    samples_[kept].area_m2 *= static_cast<double>(row);
+    sampleTriangle_[kept] = sampleTriangle_[chosen];
   }
   samples_.resize(kept);
   sampleTriangle_.resize(kept);
