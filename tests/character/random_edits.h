@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fascia/base/random.h>
@@ -28,6 +29,14 @@ class RandomEdits {
         &RandomEdits::gravity,    &RandomEdits::rename,      &RandomEdits::motion,
         &RandomEdits::soften,     &RandomEdits::resolution,  &RandomEdits::addOrRemoveSolid,
         &RandomEdits::endOrCling, &RandomEdits::undo};
+    static constexpr Edit kRigEdits[] = {
+        &RandomEdits::material,  &RandomEdits::tissue,    &RandomEdits::fat,
+        &RandomEdits::moveSolid, &RandomEdits::turnSolid, &RandomEdits::resizeSolid,
+        &RandomEdits::moveJoint, &RandomEdits::brush,     &RandomEdits::region,
+        &RandomEdits::gravity,   &RandomEdits::motion,    &RandomEdits::addOrRemoveSolid,
+        &RandomEdits::dial,      &RandomEdits::dial,      &RandomEdits::partRule,
+        &RandomEdits::simulate,  &RandomEdits::undo};
+    if (start_.rig) return (this->*kRigEdits[below(std::size(kRigEdits))])(def);
     return (this->*kEdits[below(std::size(kEdits))])(def);
   }
 
@@ -128,6 +137,7 @@ class RandomEdits {
     brush.joint = def.skeleton.joints[below(def.skeleton.joints.size())].name;
     brush.center_m = shift(0.2);
     brush.quantity = below(2) ? SkinQuantity::fat : SkinQuantity::density;
+    if (start_.rig && below(2)) brush.quantity = SkinQuantity::jiggle;
     brush.amount = brush.quantity == SkinQuantity::fat ? random_.uniform(0, 0.01) : 1;
     def.skin->brushes.push_back(brush);
     return "brush";
@@ -139,7 +149,10 @@ class RandomEdits {
     }
     SkinRegionDef region;
     region.name = "patch";
-    if (below(2)) region.solid = someSolid(def).name;
+    if (start_.rig && below(2))
+      region.joint = start_.rig->model->joints[below(start_.rig->model->joints.size())].name;
+    else if (start_.rig || below(2))
+      region.solid = someSolid(def).name;
     region.edits = {{SkinQuantity::tissue_stiffness, SkinRegionDef::Edit::Mode::scale, 2}};
     def.skin->regions.push_back(region);
     return "region";
@@ -160,6 +173,7 @@ class RandomEdits {
     return "rename joint " + from;
   }
   std::string motion(CharacterDef& def) {
+    if (def.motions.empty()) return "nothing";
     MotionDef& motion = def.motions[below(def.motions.size())];
     if (motion.tracks.empty()) return "nothing";
     std::vector<Key>& keys = motion.tracks[below(motion.tracks.size())].keys;
@@ -201,6 +215,29 @@ class RandomEdits {
     }
     def.skin->top.radius_m = random_.uniform(0.02, 0.05);
     return "end ring";
+  }
+  std::string dial(CharacterDef& def) {
+    static constexpr std::pair<const char*, double SkinPoseDef::*> kDials[] = {
+        {"jiggle", &SkinPoseDef::jiggle},
+        {"muscle", &SkinPoseDef::muscle},
+        {"volume", &SkinPoseDef::volume},
+        {"tightness", &SkinPoseDef::tightness}};
+    const auto& [name, member] = kDials[below(std::size(kDials))];
+    def.skin->pose.*member = below(4) ? random_.uniform() : 0;
+    return name;
+  }
+  std::string partRule(CharacterDef& def) {
+    if (!def.skin->parts.empty()) {
+      def.skin->parts.pop_back();
+      return "drop rule";
+    }
+    const std::vector<RigPart>& parts = start_.rig->model->parts;
+    def.skin->parts.push_back({parts[below(parts.size())].name, below(2) == 0});
+    return "rule";
+  }
+  std::string simulate(CharacterDef& def) {
+    def.skin->pose.simulate = !def.skin->pose.simulate;
+    return def.skin->pose.simulate ? "simulate" : "pose";
   }
   std::string undo(CharacterDef& def) {
     def = start_;

@@ -2,26 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <fascia/character/character.h>
-#include <fascia/fitting/fit_flesh.h>
-#include <fascia/io/rig_import/rig_import.h>
 
+#include "fleshed_rig.h"
 #include "support/assets.h"
 
 namespace fascia {
 namespace {
 
-CharacterDef fleshOut(const std::string& file) {
-  CharacterDef def;
-  auto model = std::make_shared<const RiggedModel>(readRiggedModel(file));
-  FleshFit fit = fitFlesh(*model);
-  def.name = model->name;
-  def.skeleton = std::move(fit.skeleton);
-  def.flesh = std::move(fit.flesh);
-  def.rig = RigDef{file, 1, model};
-  def.skin.emplace();
-  def.simulation.settle_s = 0.1;
-  return def;
-}
+using test::fleshOut;
 
 TEST(RigCharacter, SkinRidesOnSoftFlesh) {
   const auto file = assetFile("mesh2motion-cc0/fox-animations.glb");

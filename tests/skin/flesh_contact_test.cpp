@@ -2,6 +2,7 @@
 
 #include <fascia/skin/contact/flesh_contact.h>
 
+#include "support/steep_field.h"
 #include "test_fields.h"
 
 namespace fascia {
@@ -71,6 +72,51 @@ TEST(FleshContact, LeavesNoPointInsideOfAnySolid) {
     EXPECT_GT(result.maxCorrection_m, 0.05f) << flesh.name;
     EXPECT_LE(cloud.deepest(flesh.field), 1e-5) << flesh.name;
   }
+}
+
+// Out of one solid after the other takes hundreds of turns here: planes that meet in an angle of a
+// few degrees, so that every way out of the one leads back into the other.
+TEST(FleshContact, BringsPointsOutOfNarrowCreases) {
+  const RigidSolids flesh = RigidSolids()
+                                .addSphere(Vec3(-3.01, 0, 0), 3)
+                                .addSphere(Vec3(3.01, 0, 0), 3)
+                                .addSphere(Vec3(0, 0.2, 3), 2.8);
+  Cloud cloud(0.3, 0.02);
+  ASSERT_GT(cloud.deepest(flesh), 0.05);
+  cloud.project(flesh);
+  EXPECT_LE(cloud.deepest(flesh), 1e-5);
+}
+
+// Six spheres close a pocket: no way out of all that touch a point there is a short one.
+TEST(FleshContact, BringsPointsOutOfClosedPockets) {
+  RigidSolids flesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-0.25, 0.25}) flesh.addSphere(Vec3::Unit(axis) * side, 0.2);
+  for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(1, 1, -1),
+                             Vec3(-1, -1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, -1)})
+    flesh.addSphere(0.15 * corner, 0.2);
+  Cloud cloud(0.1, 0.06);
+  ASSERT_GT(cloud.deepest(flesh), 0.05);
+  cloud.project(flesh);
+  EXPECT_LE(cloud.deepest(flesh), 1e-5);
+}
+
+// Distances that are right to the first order only, as those of deformed solids are.
+class RoughSolids final : public RigidSolids {
+ public:
+  void evaluate(SolidId id, ConstVectors points, float* distance_m, Vectors normal) const override {
+    RigidSolids::evaluate(id, points, distance_m, normal);
+    for (std::size_t i = 0; i < points.count; ++i) distance_m[i] += distance_m[i] * distance_m[i];
+  }
+};
+
+TEST(FleshContact, LooksAgainAfterALongWayOutOfOneSolid) {
+  RoughSolids flesh;
+  flesh.addSphere(Vec3::Zero(), 0.3);
+  Cloud cloud(0.25, 0);
+  ASSERT_GT(cloud.deepest(flesh), 0.05);
+  cloud.project(flesh);
+  EXPECT_LE(cloud.deepest(flesh), 1e-5);
 }
 
 TEST(FleshContact, MeasuresTheDepthBelowTheSurfaceOfTheFat) {
@@ -198,6 +244,35 @@ TEST(FleshContact, TakesThePlaneOfTheNearerOfTwoSolids) {
   });
   EXPECT_GT(sides[0], 100);
   EXPECT_GT(sides[1], 100);
+}
+
+// A cloud that comes from far away, in steps of `step_m`.
+template <class Solids>
+void expectMemoryChangesNothing(const Solids& flesh, double step_m) {
+  Cloud cloud(0.2);
+  for (float& x : cloud.position.x) x += 3.f;
+  float farthest_m = 0;
+  for (int step = 0; step < 60; ++step) {
+    Cloud afresh = cloud;
+    afresh.contact = Cloud(0.2).contact;
+    const FleshContact::Result result = cloud.project(flesh);
+    farthest_m = std::max(farthest_m, result.maxCorrection_m);
+    ASSERT_EQ(afresh.project(flesh).maxCorrection_m, result.maxCorrection_m) << step;
+    test::forEachPoint(cloud.layout, [&](int, int, std::size_t k) {
+      ASSERT_EQ(test::at(cloud.position, k), test::at(afresh.position, k)) << step;
+    });
+    for (float& x : cloud.position.x) x -= static_cast<float>(step_m);
+  }
+  EXPECT_GT(farthest_m, 5e-3f);
+}
+
+TEST(FleshContact, RemembersOnlyWhatChangesNothing) {
+  RigidSolids chain;
+  for (int i = 0; i < 6; ++i) chain.addSphere(Vec3(0.5 * i, 0, 0), 0.1);
+  for (const double step_m : {0.01, 0.05}) {
+    expectMemoryChangesNothing(chain, step_m);
+    expectMemoryChangesNothing(test::Steep<RigidSolids>(chain), step_m);
+  }
 }
 
 TEST(FleshContact, LeavesFixedPointsAlone) {

@@ -1,11 +1,13 @@
 #include <fascia/character/character_builder.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <utility>
 
 #include <fascia/character/idle_settings.h>
 #include <fascia/flesh/bind.h>
+#include <fascia/skin/ode_skin.h>
 
 namespace fascia {
 namespace {
@@ -22,6 +24,12 @@ SkinSettings settingsOf(const SimulationDef& s, double interval_s) {
   out.correction_tolerance_m = s.correction_tolerance_m;
   if (interval_s > 0) out.interval_s = interval_s;
   return out;
+}
+
+std::string inMicroseconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g µs", 1e6 * seconds);
+  return text;
 }
 
 bool isSoft(const FleshSolidDef& solid) {
@@ -167,6 +175,8 @@ void CharacterBuilder::bindMotions() {
 // The rig's motions come after the character's own; one that has the name of an own one is hidden.
 void CharacterBuilder::bindRigMotions() {
   const std::shared_ptr<const RiggedModel>& model = def().rig->model;
+  const bool keeps =
+      before_ && before_->skeleton == parts_.skeleton && before_->def->rig == def().rig;
   std::vector<SampledFrame> frames;
   for (const RigJoint& j : model->joints)
     frames.push_back({j.name,
@@ -175,6 +185,14 @@ void CharacterBuilder::bindRigMotions() {
   for (const SampledMotion& motion : model->motions) {
     if (std::ranges::any_of(parts_.clips, [&](const auto& c) { return c->name == motion.name; }))
       continue;
+    const auto before = [&](const auto& c) { return c->sampled.get() == &motion; };
+    if (keeps) {
+      if (const auto clip = std::ranges::find_if(before_->clips, before);
+          clip != before_->clips.end()) {
+        parts_.clips.push_back(*clip);
+        continue;
+      }
+    }
     // Shares the ownership of the whole model.
     parts_.clips.push_back(std::make_shared<BoundClip>(
         bindSampled(std::shared_ptr<const SampledMotion>(model, &motion), frames, *parts_.skeleton,
@@ -186,10 +204,10 @@ void CharacterBuilder::bindRigMotions() {
 void CharacterBuilder::makeSkin() {
   if (!def().skin) return;
   const RiggedModel* rig = def().rig ? def().rig->model.get() : nullptr;
-  const bool sameBelow = before_ && before_->skin && before_->skeleton == parts_.skeleton &&
+  const bool sameRig = before_ && before_->skin && before_->def->rig == def().rig;
+  const bool sameBelow = sameRig && before_->skeleton == parts_.skeleton &&
                          before_->flesh == parts_.flesh &&
-                         before_->def->simulation == def().simulation &&
-                         before_->def->rig == def().rig;
+                         before_->def->simulation == def().simulation;
   if (sameBelow && before_->def->skin == def().skin) {
     parts_.skin = before_->skin;
     return;
@@ -202,7 +220,25 @@ void CharacterBuilder::makeSkin() {
   parts_.skin = std::make_shared<Skin>(
       *def().skin, settingsOf(def().simulation, parts_.interval_s),
       SkinBase{*parts_.skeleton, *parts_.flesh, posedSkeleton, posedFlesh, rig}, "/skin",
-      diagnostics_, before_ ? before_->skin.get() : nullptr);
+      diagnostics_, sameRig ? before_->skin.get() : nullptr);
+  checkIntegrator();
+}
+
+// What cannot keep this skin calm with steps of the length that is allowed is refused: its error
+// control would let it swing up.
+void CharacterBuilder::checkIntegrator() {
+  const SimulationDef& simulation = def().simulation;
+  const std::string& name = simulation.integrator;
+  if (!diagnostics_.ok() || !parts_.skin->isSimulated() || name == "auto" || name == "leapfrog")
+    return;
+  const double longest_s = longestOdeStep_s(*parts_.skin);
+  if (longest_s >= simulation.min_step_s) return;
+  diagnostics_.error(
+      "/simulation/integrator",
+      "found " + name + ", which keeps this skin from swinging up only with steps of " +
+          inMicroseconds(longest_s) + ", expected one that does with min_step_s (" +
+          inMicroseconds(simulation.min_step_s) + ")",
+      "choose auto, or an implicit one; or make the skin softer, heavier or its drag larger");
 }
 
 }  // namespace fascia

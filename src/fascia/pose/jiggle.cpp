@@ -106,6 +106,25 @@ void Jiggle::placeNodes(const PoseMesh& mesh, const LimbParts& parts,
   }
 }
 
+JiggleState Jiggle::carryOver(const JiggleState& state, const Jiggle& before,
+                              std::span<const Eigen::Vector3f> rest,
+                              std::span<const Eigen::Vector3f> restBefore) const {
+  JiggleState out;
+  if (state.offset.size() != before.nodes_.size() || before.nodes_.empty()) return out;
+  out.origin_m = state.origin_m;
+  for (FrameArray* a : {&out.place, &out.placeVelocity}) a->assign(nodes_.size(), Vector4f::Zero());
+  for (const Node& node : nodes_) {
+    const auto away = [&](const Node& old) {
+      return (restBefore[old.point] - rest[node.point]).squaredNorm();
+    };
+    const auto nearest = std::ranges::min_element(before.nodes_, {}, away);
+    const auto k = static_cast<std::size_t>(nearest - before.nodes_.begin());
+    out.offset.push_back(state.offset[k]);
+    out.velocity.push_back(state.velocity[k]);
+  }
+  return out;
+}
+
 void Jiggle::step(double dt_s, std::span<const Vector4f> position, const Vec3& origin_m,
                   JiggleState& state) const {
   if (state.offset.size() != nodes_.size()) {

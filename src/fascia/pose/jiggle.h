@@ -24,6 +24,12 @@ class Jiggle {
          std::span<const float> dial);
 
   std::size_t nodeCount() const { return nodes_.size(); }
+  // The state of another figure's jiggle as one of this one's: every place swings on as what was
+  // nearest to it there. `rest` and `restBefore`: the points of both at rest. What places have done
+  // since is forgotten: an edit is no motion.
+  JiggleState carryOver(const JiggleState& state, const Jiggle& before,
+                        std::span<const Eigen::Vector3f> rest,
+                        std::span<const Eigen::Vector3f> restBefore) const;
   // Advances to a frame dt_s later, where the skin without jiggle is at `position` + `origin_m`.
   void step(double dt_s, std::span<const Vector4f> position, const Vec3& origin_m,
             JiggleState& state) const;

@@ -31,35 +31,77 @@ void forChunks(std::size_t count, const Task& task) {
 
 }  // namespace
 
-PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
-    : mesh_(makePoseMesh(source)), jointCount_(source.joints.size()) {
-  parts_ = std::make_shared<const LimbParts>(makeLimbParts(source, mesh_));
-  FASCIA_ASSERT(parts_->home.size() == mesh_.size() && parts_->part.size() == jointCount_,
+PoseSkin::Shape::Shape(const PoseSource& source, const std::vector<char>& rigidPoints)
+    : mesh(makePoseMesh(source)),
+      parts(std::make_shared<const LimbParts>(makeLimbParts(source, mesh))),
+      jointCount(source.joints.size()),
+      rigid(rigidPoints.empty() ? stiffPieces(source) : rigidPoints),
+      base(source, mesh),
+      spread(mesh, *parts) {
+  FASCIA_ASSERT(parts->home.size() == mesh.size() && parts->part.size() == jointCount,
                 "every point is of a part");
-  base_ = BasePose(source, mesh_);
-  rigid_ = dials.rigid.empty() ? stiffPieces(source) : dials.rigid;
-  FASCIA_ASSERT(rigid_.size() == mesh_.size(), "every point is rigid or not");
-  contact_ = LimbContact(source, mesh_, parts_, rigid_);
-  elastic_ = ElasticLayer(source, mesh_, *parts_,
-                          valuesOf(dials.tightness, rigid_, PoseDials::kTightness), rigid_);
-  const SkinSpread spread(mesh_, *parts_);
-  volume_ = JointVolume(source, mesh_, *parts_, spread,
-                        valuesOf(dials.volume, rigid_, PoseDials::kVolume));
-  muscles_ = MuscleSwell(source, mesh_, *parts_, spread,
-                         valuesOf(dials.muscle, rigid_, PoseDials::kMuscle));
-  jiggle_ = Jiggle(source, mesh_, *parts_, valuesOf(dials.jiggle, rigid_, PoseDials::kJiggle));
-  std::vector<float> softness = softnessOf(source, mesh_, *parts_);
-  FASCIA_ASSERT(softness.size() == mesh_.size(), "a softness for each point");
+  FASCIA_ASSERT(rigid.size() == mesh.size(), "every point is rigid or not");
+  contact = LimbContact(source, mesh, parts, rigid);
+  std::vector<float> softness = softnessOf(source, mesh, *parts);
+  FASCIA_ASSERT(softness.size() == mesh.size(), "a softness for each point");
   for (std::size_t i = 0; i < softness.size(); ++i)
-    if (rigid_[i]) softness[i] = 0;
-  press_ = LimbPress(source, mesh_, parts_, softness);
-  nesting_ = ShellNesting(source, mesh_, rigid_);
+    if (rigid[i]) softness[i] = 0;
+  press = LimbPress(source, mesh, parts, softness);
+  nesting = ShellNesting(source, mesh, rigid);
+}
+
+PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
+    : shape_(std::make_shared<const Shape>(source, dials.rigid)) {
+  makeStages(source, dials, nullptr);
+}
+
+PoseSkin::PoseSkin(const PoseSkin& before, const PoseSource& source, const PoseDials& dials)
+    : shape_(before.shape_) {
+  FASCIA_ASSERT(source.points.size() == pointCount() && source.joints.size() == jointCount(),
+                "the same figure");
+  FASCIA_ASSERT(dials.rigid.empty() || dials.rigid == shape_->rigid, "the same rigid points");
+  makeStages(source, dials, &before);
+}
+
+bool PoseSkin::has(const PoseDials& dials) const {
+  const std::vector<char>& rigid = shape_->rigid;
+  return dials_.tightness == valuesOf(dials.tightness, rigid, PoseDials::kTightness) &&
+         dials_.volume == valuesOf(dials.volume, rigid, PoseDials::kVolume) &&
+         dials_.muscle == valuesOf(dials.muscle, rigid, PoseDials::kMuscle) &&
+         dials_.jiggle == valuesOf(dials.jiggle, rigid, PoseDials::kJiggle);
+}
+
+// With `before`, of the same shape: its stages where their dials are the same.
+void PoseSkin::makeStages(const PoseSource& source, const PoseDials& dials,
+                          const PoseSkin* before) {
+  const PoseMesh& mesh = shape_->mesh;
+  const LimbParts& parts = *shape_->parts;
+  dials_.tightness = valuesOf(dials.tightness, shape_->rigid, PoseDials::kTightness);
+  dials_.volume = valuesOf(dials.volume, shape_->rigid, PoseDials::kVolume);
+  dials_.muscle = valuesOf(dials.muscle, shape_->rigid, PoseDials::kMuscle);
+  dials_.jiggle = valuesOf(dials.jiggle, shape_->rigid, PoseDials::kJiggle);
+  const auto keeps = [&](std::vector<float> PoseDials::*dial) {
+    return before && before->dials_.*dial == dials_.*dial;
+  };
+  elastic_ = keeps(&PoseDials::tightness)
+                 ? before->elastic_
+                 : std::make_shared<const ElasticLayer>(source, mesh, parts, dials_.tightness,
+                                                        shape_->rigid);
+  volume_ = keeps(&PoseDials::volume) ? before->volume_
+                                      : std::make_shared<const JointVolume>(
+                                            source, mesh, parts, shape_->spread, dials_.volume);
+  muscles_ = keeps(&PoseDials::muscle) ? before->muscles_
+                                       : std::make_shared<const MuscleSwell>(
+                                             source, mesh, parts, shape_->spread, dials_.muscle);
+  jiggle_ = keeps(&PoseDials::jiggle)
+                ? before->jiggle_
+                : std::make_shared<const Jiggle>(source, mesh, parts, dials_.jiggle);
 }
 
 // Joints relative to an origin that goes with the root: floats stay exact far away from the
 // world's.
 Vec3 PoseSkin::placeJoints(std::span<const Transform> motion, Scratch& scratch) const {
-  FASCIA_ASSERT(motion.size() == jointCount_, "a motion for each joint");
+  FASCIA_ASSERT(motion.size() == jointCount(), "a motion for each joint");
   const Vec3 origin = motion.empty() ? Vec3::Zero().eval() : motion[0].translation_m;
   scratch.joints.clear();
   for (const Transform& t : motion)
@@ -72,16 +114,16 @@ void PoseSkin::displaceFlesh(Scratch& scratch) const {
   FASCIA_ASSERT(scratch.position.size() == pointCount() && scratch.rotation.size() == pointCount(),
                 "the points are placed");
   scratch.along.assign(pointCount(), 0.f);
-  volume_.restore(scratch.joints, scratch.position, scratch.along);
-  muscles_.swell(scratch.joints, scratch.along);
+  volume_->restore(scratch.joints, scratch.position, scratch.along);
+  muscles_->swell(scratch.joints, scratch.along);
   forChunks(pointCount(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       // Where limbs already press on each other flesh has nowhere to go.
       const float along = scratch.along[i] * LimbContact::freedom(scratch.contact, i);
-      if (rigid_[i] || std::abs(along) < 1e-8f) continue;
-      const float most = kMostAlong * parts_->radius_m[i];
+      if (shape_->rigid[i] || std::abs(along) < 1e-8f) continue;
+      const float most = kMostAlong * shape_->parts->radius_m[i];
       const float out = most * std::tanh(along / most);
-      scratch.position[i] += out * (scratch.rotation[i] * wide(mesh_.normal[i]));
+      scratch.position[i] += out * (scratch.rotation[i] * wide(shape_->mesh.normal[i]));
     }
   });
 }
@@ -94,24 +136,25 @@ void PoseSkin::evaluate(std::span<const Transform> motion, const Moment& moment,
   scratch.position.resize(count);
   scratch.turn.resize(count);
   scratch.rotation.resize(count);
-  scratch.bend.resize(jointCount_);
+  scratch.bend.resize(jointCount());
   forChunks(count, [&](std::size_t begin, std::size_t end) {
-    base_.place(scratch.joints, begin, end, scratch.position, scratch.turn, scratch.rotation);
+    shape_->base.place(scratch.joints, begin, end, scratch.position, scratch.turn,
+                       scratch.rotation);
   });
-  contact_.measureBend(scratch.joints, scratch.bend);
-  contact_.meet(scratch.joints, scratch.bend, scratch.position, scratch.turn, scratch.rotation,
-                scratch.contact);
-  elastic_.relax(scratch.rotation, scratch.position, scratch.elastic);
+  shape_->contact.measureBend(scratch.joints, scratch.bend);
+  shape_->contact.meet(scratch.joints, scratch.bend, scratch.position, scratch.turn,
+                       scratch.rotation, scratch.contact);
+  elastic_->relax(scratch.rotation, scratch.position, scratch.elastic);
   displaceFlesh(scratch);
-  if (moment.jiggle && jiggle_.nodeCount() > 0) {
-    jiggle_.step(moment.dt_s, scratch.position, origin, *moment.jiggle);
-    jiggle_.add(*moment.jiggle, scratch.shown, scratch.position);
+  if (moment.jiggle && jiggle_->nodeCount() > 0) {
+    jiggle_->step(moment.dt_s, scratch.position, origin, *moment.jiggle);
+    jiggle_->add(*moment.jiggle, scratch.shown, scratch.position);
   }
   if (moment.obstacles)
-    Dents::press(mesh_, *moment.obstacles, origin, scratch.position, scratch.dents);
-  press_.press(scratch.joints, scratch.position, scratch.press);
-  contact_.finish(scratch.joints, scratch.rotation, scratch.position, scratch.contact);
-  nesting_.nest(scratch.joints, scratch.position, scratch.nesting);
+    Dents::press(shape_->mesh, *moment.obstacles, origin, scratch.position, scratch.dents);
+  shape_->press.press(scratch.joints, scratch.position, scratch.press);
+  shape_->contact.finish(scratch.joints, scratch.rotation, scratch.position, scratch.contact);
+  shape_->nesting.nest(scratch.joints, scratch.position, scratch.nesting);
   const Eigen::Vector3f shift = origin.cast<float>();
   forChunks(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

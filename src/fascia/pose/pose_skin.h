@@ -15,6 +15,7 @@
 #include <fascia/pose/muscle_swell.h>
 #include <fascia/pose/pose_mesh.h>
 #include <fascia/pose/shell_nesting.h>
+#include <fascia/pose/skin_spread.h>
 
 namespace fascia {
 
@@ -42,6 +43,7 @@ struct PoseDials {
 //   limb_contact    the last word: both sides of a crease end on one surface
 //   shell_nesting   pieces that lie on each other move alike
 // Constant once built, any number of threads may evaluate; same bits on any number of threads.
+// Copies share everything.
 class PoseSkin {
  public:
   // Scratch memory of one evaluation; grows on first use and allocates nothing after.
@@ -67,12 +69,17 @@ class PoseSkin {
   };
 
   PoseSkin(const PoseSource& source, const PoseDials& dials);
+  // The same figure with other dials, to the same bits as made afresh: only stages whose dial has
+  // changed are made. `source` must be what `before` was made of, `dials.rigid` as it was there.
+  PoseSkin(const PoseSkin& before, const PoseSource& source, const PoseDials& dials);
 
-  std::size_t pointCount() const { return base_.size(); }
-  std::size_t jointCount() const { return jointCount_; }
-  const Jiggle& jiggle() const { return jiggle_; }
-  const PoseMesh& mesh() const { return mesh_; }
-  const LimbParts& parts() const { return *parts_; }
+  std::size_t pointCount() const { return shape_->base.size(); }
+  std::size_t jointCount() const { return shape_->jointCount; }
+  const Jiggle& jiggle() const { return *jiggle_; }
+  const PoseMesh& mesh() const { return shape_->mesh; }
+  const LimbParts& parts() const { return *shape_->parts; }
+  std::span<const char> rigid() const { return shape_->rigid; }
+  bool has(const PoseDials& dials) const;  // whether these dials change nothing
 
   // The skin's points, world, m, into the first pointCount() entries of `out`. `motion` per joint:
   // rest -> now, rigid.
@@ -80,21 +87,30 @@ class PoseSkin {
                 VectorArray& out) const;
 
  private:
+  // What no dial changes.
+  struct Shape {
+    Shape(const PoseSource& source, const std::vector<char>& rigidPoints);
+
+    PoseMesh mesh;
+    std::shared_ptr<const LimbParts> parts;
+    std::size_t jointCount;
+    std::vector<char> rigid;  // per point
+    BasePose base;
+    LimbContact contact;
+    SkinSpread spread;  // read while stages are made
+    LimbPress press;
+    ShellNesting nesting;
+  };
+  void makeStages(const PoseSource& source, const PoseDials& dials, const PoseSkin* before);
   Vec3 placeJoints(std::span<const Transform> motion, Scratch& scratch) const;
   void displaceFlesh(Scratch& scratch) const;
 
-  PoseMesh mesh_;
-  std::shared_ptr<const LimbParts> parts_;
-  std::size_t jointCount_ = 0;
-  std::vector<char> rigid_;  // per point
-  BasePose base_;
-  LimbContact contact_;
-  ElasticLayer elastic_;
-  JointVolume volume_;
-  MuscleSwell muscles_;
-  Jiggle jiggle_;
-  LimbPress press_;
-  ShellNesting nesting_;
+  std::shared_ptr<const Shape> shape_;
+  PoseDials dials_;  // as the stages have them: a value per point, 0 where the skin is rigid
+  std::shared_ptr<const ElasticLayer> elastic_;
+  std::shared_ptr<const JointVolume> volume_;
+  std::shared_ptr<const MuscleSwell> muscles_;
+  std::shared_ptr<const Jiggle> jiggle_;
 };
 
 }  // namespace fascia

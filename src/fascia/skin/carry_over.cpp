@@ -7,6 +7,8 @@
 #include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/grid/grid_wrap.h>
 #include <fascia/skin/grid/resample.h>
+#include <fascia/skin/mesh/mesh_rest.h>
+#include <fascia/skin/mesh/rigged_skin.h>
 
 namespace fascia {
 namespace {
@@ -20,16 +22,57 @@ bool sameLayout(const GridLayout& a, const GridLayout& b) {
   return a.columns == b.columns && a.rows == b.rows;
 }
 
-bool samePlaces(const VectorArray& a, const VectorArray& b) {
-  return a.x == b.x && a.y == b.y && a.z == b.z;
+// Whether both are skins of one mesh, in whatever order.
+bool sameMesh(const Skin& a, const Skin& b) {
+  if (!a.rigged() || !b.rigged() || a.pointCount() != b.pointCount()) return false;
+  if (a.parts().shape == b.parts().shape) return true;
+  const std::vector<std::uint32_t>&at = a.parts().meshRest->storageOf,
+        &bt = b.parts().meshRest->storageOf;
+  for (std::size_t p = 0; p < at.size(); ++p)
+    if (pointAt(a.restPosition(), at[p]) != pointAt(b.restPosition(), bt[p])) return false;
+  return true;
 }
 
 // Whether an entry of per-point arrays means the same point in both.
 bool samePoints(const Skin& a, const Skin& b) {
   if (a.grid() && b.grid()) return sameLayout(a.grid()->layout(), b.grid()->layout());
-  return !a.grid() && !b.grid() && a.isSimulated() == b.isSimulated() &&
-         a.fixedPoints().size() == b.fixedPoints().size() &&
-         (a.parts().shape == b.parts().shape || samePlaces(a.restPosition(), b.restPosition()));
+  return sameMesh(a, b) && a.isSimulated() == b.isSimulated() &&
+         a.parts().meshRest->order == b.parts().meshRest->order;
+}
+
+// From one order of a mesh's points to another, and between a skin that is stepped and one that
+// follows from its pose.
+SkinState inOtherOrder(const Skin& from, const SkinState& state, const Skin& to) {
+  const std::vector<std::uint32_t>& order = to.parts().meshRest->order;
+  const std::vector<std::uint32_t>& storageOf = from.parts().meshRest->storageOf;
+  const auto reordered = [&](const VectorArray& a) {
+    VectorArray out(to.topology().storage());
+    if (a.size() == 0) return out;
+    for (std::size_t k = 0; k < order.size(); ++k)
+      for (const auto axis : VectorArray::kAxes) (out.*axis)[k] = (a.*axis)[storageOf[order[k]]];
+    return out;
+  };
+  SkinState out;
+  out.joints = state.joints;
+  out.starting = state.starting || !from.isSimulated();
+  out.jiggle = state.jiggle;
+  out.position = reordered(state.position);
+  out.velocity = reordered(state.velocity);
+  out.maxSpeed_m_per_s = state.maxSpeed_m_per_s;
+  out.surroundings.resize(to.topology().storage());
+  if (!state.ready || !from.isSimulated() || !to.isSimulated()) return out;
+  out.surroundings.anchor = reordered(state.surroundings.anchor);
+  out.surroundings.anchorVelocity = reordered(state.surroundings.anchorVelocity);
+  out.ready = true;
+  return out;
+}
+
+// The flesh of a mesh that follows from its pose swings on.
+void carryOverJiggle(const Skin& from, const Skin& to, JiggleState& state) {
+  if (!from.rigged() || !to.rigged()) return;
+  const PoseSkin &before = *from.rigged()->skin, &now = *to.rigged()->skin;
+  if (&before == &now) return;
+  state = now.jiggle().carryOver(state, before.jiggle(), now.mesh().rest, before.mesh().rest);
 }
 
 // From one grid to another: what each point of it does.
@@ -90,17 +133,19 @@ SkinState placedAnew(const Skin& skin, const SkinPose& pose) {
 
 SkinState carryOver(const Skin& from, SkinState state, const Skin& to, const SkinPose& pose) {
   if (from.id() == to.id()) return state;
-  const bool same = samePoints(from, to);
-  if (!same && !(from.grid() && to.grid())) return placedAnew(to, pose);
+  const bool same = samePoints(from, to), reordered = !same && sameMesh(from, to);
+  if (!same && !reordered && !(from.grid() && to.grid())) return placedAnew(to, pose);
   SkinState coarser;  // of the grid that a fine one rides on
   const bool rode = from.coarse() && !state.coarse.empty();
   if (state.ready && to.coarse())
     coarser = rode ? carryOver(*from.coarse(), std::move(state.coarse.front()), *to.coarse(), pose)
                    : carryOver(from, state, *to.coarse(), pose);
-  SkinState out = same ? std::move(state) : onOtherGrid(from, state, to);
+  SkinState out = same        ? std::move(state)
+                  : reordered ? inOtherOrder(from, state, to)
+                              : onOtherGrid(from, state, to);
   // The edit is no motion: neither joints nor anchors have a velocity from it.
   if (!out.joints.empty()) out.joints.assign(pose.joints.begin(), pose.joints.end());
-  if (from.rigged() != to.rigged()) out.jiggle.frames = 0;
+  carryOverJiggle(from, to, out.jiggle);
   out.coarse.clear();
   if (!out.ready) return out;
   const std::unique_ptr<PointPlacer> placer = to.attachment().makePlacer();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
@@ -48,6 +49,7 @@ SkinParts GridSkinBuilder::build() {
   if (!checkGrid()) return {};
   layout_ = {def_.columns, def_.rows, true};
   if (!checkPoints() || !findJoints() || !layAround()) return {};
+  findSource();
   setQuantities();
   setNaturalLengths();
   applyEdits();
@@ -318,10 +320,37 @@ void GridSkinBuilder::overrideAnchors(std::vector<TissueAnchors::Anchor>& anchor
   }
 }
 
+void GridSkinBuilder::findSource() {
+  auto source = std::make_shared<GridQuantitySource>();
+  source->def = def_;
+  for (const SkinBrushDef& brush : def_.brushes)
+    source->brushCenters_m.push_back(brushCenter(brush, base_).value_or(Vec3::Zero()));
+  parts_.gridQuantitySource = std::move(source);
+  const GridQuantitySource* old = before_ ? before_->gridQuantitySource.get() : nullptr;
+  const bool alike = old && before_->shape == parts_.shape &&
+                     before_->attachment == parts_.attachment &&
+                     old->editsAlike(*parts_.gridQuantitySource);
+  for (const QuantityInfo& i : quantityInfos())
+    changes_[static_cast<std::size_t>(i.quantity)] = !alike || !keepsQuantity(i.quantity);
+}
+
+// Whether the definition gives all points the value that it gave them.
+bool GridSkinBuilder::keepsQuantity(SkinQuantity quantity) const {
+  const SkinDef& old = before_->gridQuantitySource->def;
+  if (quantity == SkinQuantity::tissue_rest_length &&
+      old.tissue.rest_length_m != def_.tissue.rest_length_m)
+    return false;
+  return uniformValue(old, quantity) == uniformValue(def_, quantity);
+}
+
 void GridSkinBuilder::setQuantities() {
   const GridLayout& g = layout_;
   for (const QuantityInfo& i : quantityInfos()) {
     FloatArray& values = (*quantities_)[i.quantity];
+    if (!changes_[static_cast<std::size_t>(i.quantity)]) {
+      values = (*before_->quantities)[i.quantity];
+      continue;
+    }
     values.assign(g.storage(), static_cast<float>(uniformValue(def_, i.quantity)));
     if (!def_.points || pointValues(*def_.points, i.quantity).empty()) continue;
     const std::vector<float>& saved = pointValues(*def_.points, i.quantity);
@@ -334,6 +363,7 @@ void GridSkinBuilder::setQuantities() {
 
 // Where nobody says otherwise a strand is as long at rest as in the rest posture.
 void GridSkinBuilder::setNaturalLengths() {
+  if (!changes_[static_cast<std::size_t>(SkinQuantity::tissue_rest_length)]) return;
   if (def_.tissue.rest_length_m || (def_.points && !def_.points->tissue_rest_length.empty()))
     return;
   FloatArray& restLength = (*quantities_)[SkinQuantity::tissue_rest_length];
@@ -348,6 +378,7 @@ void GridSkinBuilder::setNaturalLengths() {
 void GridSkinBuilder::applyEdits() {
   for (std::size_t n = 0; n < def_.anchors.size(); ++n)
     report_.findSolid("/anchors/" + std::to_string(n) + "/solid", def_.anchors[n].solid);
+  if (std::ranges::none_of(changes_, std::identity{})) return;
   std::vector<EditPoint> points;
   std::vector<std::size_t> numbers(layout_.storage());
   forEachPoint(layout_, [&](int i, int j, std::size_t k) {
@@ -357,7 +388,7 @@ void GridSkinBuilder::applyEdits() {
   });
   for (const TissueAnchors::Anchor& a : attachment_->anchors().anchors())
     points[numbers[a.point]].solid = a.solid;
-  applySkinEdits(def_, base_, report_, points, nullptr, rest(), *quantities_);
+  applySkinEdits(def_, base_, report_, points, nullptr, rest(), changes_, *quantities_);
 }
 
 // The surface's own forces; those of the skin before if nothing that they are made of has changed.
@@ -429,9 +460,15 @@ void GridSkinBuilder::makeCoarse() {
   builder.joint_[1] = joint_[1];
   builder.size_m_ = parts_.shape->size_m;
   builder.layUnder(layout_, parts_);
-  for (const QuantityInfo& i : quantityInfos())
-    (*builder.quantities_)[i.quantity] =
-        resample(layout_, (*quantities_)[i.quantity], builder.layout_);
+  const bool sameLayout = before_ && before_->coarse &&
+                          before_->coarse->grid()->layout().columns == builder.layout_.columns &&
+                          before_->coarse->grid()->layout().rows == builder.layout_.rows;
+  for (const QuantityInfo& i : quantityInfos()) {
+    const FloatArray& fine = (*quantities_)[i.quantity];
+    (*builder.quantities_)[i.quantity] = sameLayout && (*before_->quantities)[i.quantity] == fine
+                                             ? before_->coarse->quantities()[i.quantity]
+                                             : resample(layout_, fine, builder.layout_);
+  }
   builder.makeModel();
   parts_.coarse = std::make_shared<Skin>(settings_, std::move(builder.parts_));
 }

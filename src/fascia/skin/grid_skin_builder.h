@@ -45,6 +45,8 @@ class GridSkinBuilder {
   void attach(GridWrap& wrap) const;
   void overrideAnchors(std::vector<TissueAnchors::Anchor>& anchors) const;
   std::vector<GridAttachment::Fixed> fixEnds(SkinShape& shape) const;
+  void findSource();
+  bool keepsQuantity(SkinQuantity quantity) const;
   void setQuantities();
   void setNaturalLengths();
   void applyEdits();
@@ -72,6 +74,7 @@ class GridSkinBuilder {
   double size_m_ = 0;  // 0: of the rest shape's own box
   SkinParts parts_;
   std::shared_ptr<const GridAttachment> attachment_;
+  QuantityMask changes_{};  // quantities that are not those of the skin before
   std::shared_ptr<SkinQuantities> quantities_ = std::make_shared<SkinQuantities>();
 };
 

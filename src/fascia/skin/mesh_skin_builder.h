@@ -3,22 +3,26 @@
 #include <string>
 #include <vector>
 
-#include <fascia/skin/mesh/triangle_membrane.h>
+#include <fascia/skin/mesh/mesh_rest.h>
+#include <fascia/skin/mesh/mesh_topology.h>
+#include <fascia/skin/mesh/rigged_skin.h>
 #include <fascia/skin/skin_parts.h>
 
 namespace fascia {
 
 // Builds the skin of an imported mesh step by step; each step reads only what the ones before it
 // made. Its rest shape is in equilibrium in the rest posture: the strands' anchors are placed so
-// that they carry its weight there.
+// that they carry its weight there. Parts of the skin that it was edited from (`before`, of the
+// same mesh; may be nullptr) are taken over where nothing that they are made of has changed.
 class MeshSkinBuilder {
  public:
   MeshSkinBuilder(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
-                  std::string pointer, Diagnostics& diagnostics)
+                  const Skin* before, std::string pointer, Diagnostics& diagnostics)
       : def_(def),
         settings_(settings),
         base_(base),
         rig_(*base.rig),
+        before_(before ? &before->parts() : nullptr),
         report_(base, std::move(pointer), diagnostics) {}
 
   // With errors reported the result must not be used, and may be empty.
@@ -27,6 +31,8 @@ class MeshSkinBuilder {
  private:
   bool checkDef() const;
   bool findJoints();
+  MeshRestKey restKey() const;
+  void lay();
   void findFelt();
   void measureFat();
   void chooseFixed();
@@ -38,7 +44,11 @@ class MeshSkinBuilder {
   void fixLoosePieces();
   void layFat(const VectorArray& skin, const VectorArray& anchors);
   std::vector<TriangleMembrane::Corners> storedTriangles() const;
+  bool keepsTopology() const;
+  std::shared_ptr<const MeshTopology> makeTopology() const;
   TriangleMembrane makeMembrane() const;
+  std::shared_ptr<const PoseSkin> evaluator(const std::vector<Eigen::Vector3f>& rest,
+                                            const std::vector<RigJoint>& joints) const;
   Vec3 modelPoint(std::size_t p) const;
   std::vector<Vec3> pointNormals() const;  // of the model's points, at rest
   Vec3 sag(std::size_t k) const;
@@ -47,6 +57,7 @@ class MeshSkinBuilder {
   const SkinSettings& settings_;
   const SkinBase& base_;
   const RiggedModel& rig_;
+  const SkinParts* before_;
   SkinReport report_;
 
   struct Joint {
@@ -54,20 +65,14 @@ class MeshSkinBuilder {
     Transform rest_world;  // of the skeleton's joint
   };
   std::vector<Joint> joints_;  // of the rig
-  // Per point of the model:
-  std::vector<std::vector<SolidId>> felt_;  // solids beneath it
-  std::vector<float> gap_;                  // from the nearest of them, m
-  std::vector<SolidId> solid_;              // that one
-  std::vector<char> covered_;               // whether it counts as flesh beneath
-  std::vector<char> fixed_;                 // never simulated
-  std::vector<char> rigid_;                 // carried by its joints as it is
-  std::vector<std::uint32_t> storageOf_;
-  std::vector<std::uint32_t> order_;  // model point per storage index
-  std::size_t elasticCount_ = 0;      // the first so many in storage are simulated
-  FloatArray naturalFat_;             // per storage index, before edits
+  // What no quantity changes. While it is made, `making_` is the same.
+  std::shared_ptr<const MeshRest> rest_;
+  std::shared_ptr<MeshRest> making_;
+  std::vector<std::vector<SolidId>> felt_;  // per point of the model: solids beneath it
+  FloatArray naturalFat_;                   // per storage index, before edits
 
   SkinParts parts_;
-  std::shared_ptr<SkinShape> shape_ = std::make_shared<SkinShape>();
+  std::shared_ptr<const SkinShape> shape_;
   std::shared_ptr<SkinQuantities> quantities_ = std::make_shared<SkinQuantities>();
   std::shared_ptr<PointModel> points_ = std::make_shared<PointModel>();
 };

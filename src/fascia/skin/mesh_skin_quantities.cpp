@@ -22,19 +22,6 @@ constexpr double kLightest = 0.3, kHeaviest = 1.5;
 // the edges around it: fingers are modelled finely, and would crumple if they hung like a belly.
 constexpr double kMostSag = 0.25;
 
-// Mean length of the edges around each point; 0 without any.
-std::vector<double> edgesAround(const RiggedModel& rig) {
-  std::vector<double> sum(rig.points_m.size()), count(sum.size());
-  for (const auto& t : rig.triangles)
-    for (std::size_t e = 0; e < 3; ++e) {
-      const std::uint32_t a = t[e], b = t[(e + 1) % 3];
-      const double length = double{(rig.points_m[a] - rig.points_m[b]).norm()};
-      for (const std::uint32_t p : {a, b}) sum[p] += length, count[p] += 1;
-    }
-  for (std::size_t p = 0; p < sum.size(); ++p) sum[p] /= std::max(1.0, count[p]);
-  return sum;
-}
-
 double medianOf(std::vector<float> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -60,23 +47,23 @@ Vec3 MeshSkinBuilder::modelPoint(std::size_t p) const {
 // The fat of an imported figure is what lies between its surface and its solids.
 void MeshSkinBuilder::measureFat() {
   const std::size_t count = rig_.points_m.size();
-  gap_.resize(count);
-  solid_.resize(count);
-  covered_.resize(count);
+  making_->gap_m.resize(count);
+  making_->solid.resize(count);
+  making_->covered.resize(count);
   const double bare = kBare * rig_.size_m();
-  const std::vector<Vec3> normals = pointNormals();
+  const std::vector<Vec3>& normals = making_->normals;
   std::vector<double> facing(count);
   parallelFor(count, [&](std::size_t p) {
     const NearestFlesh nearest = nearestFlesh(base_.posedFlesh, modelPoint(p), felt_[p]);
-    gap_[p] = nearest.distance;
-    solid_[p] = nearest.solid;
+    making_->gap_m[p] = nearest.distance;
+    making_->solid[p] = nearest.solid;
     facing[p] = nearest.distance < bare ? nearest.normal.dot(normals[p]) : 0;
   });
   // Some pieces are modelled inside out.
   std::vector<double> outward(rig_.componentCount);
   for (std::size_t p = 0; p < count; ++p) outward[rig_.component[p]] += facing[p];
   for (std::size_t p = 0; p < count; ++p)
-    covered_[p] = std::copysign(1.0, outward[rig_.component[p]]) * facing[p] > kFacing;
+    making_->covered[p] = std::copysign(1.0, outward[rig_.component[p]]) * facing[p] > kFacing;
 }
 
 // Uniform values; where the fat is thin the skin is lighter and sits tighter, where it is thick it
@@ -84,21 +71,22 @@ void MeshSkinBuilder::measureFat() {
 void MeshSkinBuilder::setQuantities() {
   const std::size_t storage = shape_->rest.size();
   std::vector<float> thicknesses;
-  for (std::size_t p = 0; p < gap_.size(); ++p)
-    if (covered_[p] && !fixed_[p]) thicknesses.push_back(std::max(gap_[p], 0.f));
+  for (std::size_t p = 0; p < rest_->gap_m.size(); ++p)
+    if (rest_->covered[p] && !rest_->fixed[p])
+      thicknesses.push_back(std::max(rest_->gap_m[p], 0.f));
   const double usual = std::max(medianOf(std::move(thicknesses)), 1e-4 * shape_->size_m);
 
-  const std::vector<double> edges = edgesAround(rig_);
+  const std::vector<double>& edges = rest_->edges_m;
   const double gravity = settings_.gravity_m_per_s2.norm();
   SkinQuantities& q = (*quantities_);
   for (const QuantityInfo& i : quantityInfos())
     q[i.quantity].assign(storage, static_cast<float>(uniformValue(def_, i.quantity)));
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const std::uint32_t p = order_[k];
+  for (std::size_t k = 0; k < rest_->order.size(); ++k) {
+    const std::uint32_t p = rest_->order[k];
     const double thickness =
-        covered_[p] ? std::clamp<double>(gap_[p], 1e-9, def_.fat.thickness_m) : 1e-9;
+        rest_->covered[p] ? std::clamp<double>(rest_->gap_m[p], 1e-9, def_.fat.thickness_m) : 1e-9;
     const double thin = usual / thickness;
-    q[SkinQuantity::fat][k] = covered_[p] ? static_cast<float>(thickness) : 0.f;
+    q[SkinQuantity::fat][k] = rest_->covered[p] ? static_cast<float>(thickness) : 0.f;
     q[SkinQuantity::tissue_stiffness][k] *=
         static_cast<float>(std::clamp(thin, kSoftest, kFirmest));
     q[SkinQuantity::density][k] *= static_cast<float>(std::clamp(1 / thin, kLightest, kHeaviest));
@@ -115,13 +103,17 @@ void MeshSkinBuilder::setQuantities() {
     for (const QuantityInfo& i : quantityInfos()) {
       const std::vector<float>& saved = pointValues(*def_.points, i.quantity);
       if (saved.empty()) continue;
-      for (std::size_t k = 0; k < order_.size(); ++k) q[i.quantity][k] = saved[order_[k]];
+      for (std::size_t k = 0; k < rest_->order.size(); ++k)
+        q[i.quantity][k] = saved[rest_->order[k]];
     }
   std::vector<EditPoint> points;
-  for (std::size_t k = 0; k < order_.size(); ++k)
-    points.push_back(
-        {k, 0, 0, covered_[order_[k]] ? solid_[order_[k]] : SolidId(), &rig_.weights[order_[k]]});
-  applySkinEdits(def_, base_, report_, points, &rig_, shape_->rest, q);
+  for (std::size_t k = 0; k < rest_->order.size(); ++k)
+    points.push_back({k, 0, 0,
+                      rest_->covered[rest_->order[k]] ? rest_->solid[rest_->order[k]] : SolidId(),
+                      &rig_.weights[rest_->order[k]]});
+  QuantityMask all;
+  all.fill(true);
+  applySkinEdits(def_, base_, report_, points, &rig_, shape_->rest, all, q);
 }
 
 }  // namespace fascia

@@ -16,7 +16,7 @@ std::uint64_t nextSkinId() {
 
 SkinParts build(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
                 const Skin* before, const std::string& pointer, Diagnostics& diagnostics) {
-  if (base.rig) return MeshSkinBuilder(def, settings, base, pointer, diagnostics).build();
+  if (base.rig) return MeshSkinBuilder(def, settings, base, before, pointer, diagnostics).build();
   return GridSkinBuilder(def, settings, base, before, pointer, diagnostics).build();
 }
 

@@ -54,6 +54,8 @@ struct SkinBase {
 
 struct GridSkin;
 struct GridRest;
+struct GridQuantitySource;
+struct MeshRest;
 struct RiggedSkin;
 class Skin;
 
@@ -80,7 +82,9 @@ struct SkinParts {
   // Of one kind of skin only:
   std::shared_ptr<const GridSkin> grid;
   std::shared_ptr<const GridRest> gridRest;
+  std::shared_ptr<const GridQuantitySource> gridQuantitySource;  // none of a coarse one's
   std::shared_ptr<const RiggedSkin> rigged;
+  std::shared_ptr<const MeshRest> meshRest;
   bool simulated = true;
 };
 
@@ -90,8 +94,9 @@ class Skin {
  public:
   // Reports every fault of `def` with pointers below `pointer`; with errors the result must not be
   // used. A grid shrink-wraps the flesh unless `def.points` brings a rest shape. Parts of the skin
-  // that it was edited from are taken over where nothing that they are made of has changed; the
-  // rest shape of a grid then follows solids and joints instead of being wrapped anew.
+  // that it was edited from (`before`, around the same rig if any) are taken over where nothing
+  // that they are made of has changed; the rest shape of a grid then follows solids and joints
+  // instead of being wrapped anew.
   Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
        const std::string& pointer, Diagnostics& diagnostics, const Skin* before = nullptr);
   Skin(const SkinSettings& settings, SkinParts parts);
@@ -143,6 +148,7 @@ struct SkinState {
   std::vector<Transform> joints;   // the pose of the last interval's end
   JiggleState jiggle;              // of an imported mesh that is not simulated
   float maxSpeed_m_per_s = 0;      // at the end of the last interval
+  double odeStep_s = 0;            // that an adaptive integrator goes on with; 0: its first
   bool ready = false;              // surroundings belong to this state's time
   bool starting = false;           // moves with its flesh from the first interval on, unlagging
 

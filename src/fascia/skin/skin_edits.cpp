@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <fascia/base/assert.h>
+#include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/skin_parts.h>
 
@@ -10,6 +11,11 @@ namespace {
 
 // Beyond so many radii nothing of a brush is left in a float: exp(-r²/2) is below 1e-49.
 constexpr double kBrushReach = 15;
+// Beyond so many radii less than a hundred-millionth of a millionth of a brush is left: 2⁻²⁵ of
+// this share of its amount, half of what a float of that size can hold.
+constexpr double kFaintBrush = 8, kLostIn = 1e-6;
+// Handed to a thread at once: fewer cost more to hand out than to do.
+constexpr std::size_t kPointsPerChunk = 1024;
 
 // 1 inside [low, high], falling to 0 over `feather` outside of it; low > high wraps around.
 double inRange(double x, double low, double high, double feather, bool periodic) {
@@ -34,8 +40,9 @@ float shareOf(const SkinRegionDef& region, SolidId solid, int joint, const EditP
     return share;
   }
   if (!region.solid.empty()) return p.solid == solid ? 1.f : 0.f;
-  return static_cast<float>(inRange(p.u, region.u_min, region.u_max, region.feather, true) *
-                            inRange(p.v, region.v_min, region.v_max, region.feather, false));
+  const double along = inRange(p.v, region.v_min, region.v_max, region.feather, false);
+  if (along == 0) return 0;
+  return static_cast<float>(inRange(p.u, region.u_min, region.u_max, region.feather, true) * along);
 }
 
 int findRigJoint(const RiggedModel& rig, const std::string& name) {
@@ -56,11 +63,29 @@ double edited(const SkinRegionDef::Edit& edit, double old) {
   return old + edit.value;
 }
 
+// Points do not depend on each other.
+template <class Visit>
+void forChunksOf(std::span<const EditPoint> points, const Visit& visit) {
+  parallelFor((points.size() + kPointsPerChunk - 1) / kPointsPerChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(points.size(), (chunk + 1) * kPointsPerChunk);
+    for (std::size_t i = chunk * kPointsPerChunk; i < end; ++i) visit(i);
+  });
+}
+
 }  // namespace
+
+std::optional<Vec3> brushCenter(const SkinBrushDef& brush, const SkinBase& base) {
+  if (brush.joint.empty()) return brush.center_m;
+  const JointId joint = base.skeleton.find(brush.joint);
+  if (!joint.valid()) return std::nullopt;
+  return base.posedSkeleton.joint_world[joint.index()].point(brush.center_m);
+}
 
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
                     std::span<const EditPoint> points, const RiggedModel* rig,
-                    const VectorArray& rest, SkinQuantities& quantities) {
+                    const VectorArray& rest, const QuantityMask& changes,
+                    SkinQuantities& quantities) {
+  const auto isChanged = [&](SkinQuantity q) { return changes[static_cast<std::size_t>(q)]; };
   for (std::size_t n = 0; n < def.regions.size(); ++n) {
     const SkinRegionDef& region = def.regions[n];
     const std::string where = "/regions/" + std::to_string(n);
@@ -84,9 +109,12 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
                    "only u goes around; v runs upwards");
     SolidId solid;
     if (!region.solid.empty()) solid = report.findSolid(where + "/solid", region.solid);
-    std::vector<float> shares;
-    for (const EditPoint& p : points) shares.push_back(shareOf(region, solid, joint, p));
+    if (std::ranges::none_of(region.edits, isChanged, &SkinRegionDef::Edit::quantity)) continue;
+    std::vector<float> shares(points.size());
+    forChunksOf(points,
+                [&](std::size_t i) { shares[i] = shareOf(region, solid, joint, points[i]); });
     for (const SkinRegionDef::Edit& edit : region.edits) {
+      if (!isChanged(edit.quantity)) continue;
       FloatArray& values = quantities[edit.quantity];
       for (std::size_t i = 0; i < points.size(); ++i) {
         if (shares[i] == 0) continue;
@@ -98,24 +126,29 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
   for (std::size_t n = 0; n < def.brushes.size(); ++n) {
     const SkinBrushDef& brush = def.brushes[n];
     const std::string where = "/brushes/" + std::to_string(n);
-    Vec3 center = brush.center_m;
-    if (!brush.joint.empty()) {
-      const JointId joint = report.findJoint(where + "/joint", brush.joint);
-      if (!joint.valid()) continue;
-      center = base.posedSkeleton.joint_world[joint.index()].point(center);
+    const std::optional<Vec3> center = brushCenter(brush, base);
+    if (!center) {
+      report.findJoint(where + "/joint", brush.joint);  // says what is missing
+      continue;
     }
+    if (!isChanged(brush.quantity)) continue;
     FloatArray& values = quantities[brush.quantity];
-    for (const EditPoint& p : points) {
-      const double r = (pointAt(rest, p.point) - center).norm() / std::max(1e-9, brush.radius_m);
-      if (r > kBrushReach) continue;
+    forChunksOf(points, [&](std::size_t i) {
+      const EditPoint& p = points[i];
+      const double r = (pointAt(rest, p.point) - *center).norm() / std::max(1e-9, brush.radius_m);
+      if (r > kBrushReach) return;
+      // What is left of it there is lost in the rounding of what it is added to.
+      if (r > kFaintBrush && values[p.point] > kLostIn * std::abs(brush.amount)) return;
       values[p.point] = std::max(
           0.f, values[p.point] + static_cast<float>(brush.amount * std::exp(-0.5 * r * r)));
-    }
+    });
   }
-  for (const QuantityInfo& i : quantityInfos())
+  for (const QuantityInfo& i : quantityInfos()) {
+    if (!isChanged(i.quantity)) continue;
     for (float& v : quantities[i.quantity])
       v = std::clamp(v, static_cast<float>(i.uniform.range.min),
                      static_cast<float>(i.uniform.range.max));
+  }
 }
 
 }  // namespace fascia

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +42,9 @@ struct NearestFlesh {
   SolidId solid;
   Vec3 normal = Vec3::UnitY();
 };
-NearestFlesh nearestFlesh(const Field& field, const Vec3& p, std::span<const SolidId> solids);
-NearestFlesh nearestFlesh(const Field& field, const Vec3& p);  // of all
+NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p,
+                          std::span<const SolidId> solids);
+NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p);  // of all
 
 // Regions and brushes on the points of a skin. A rig has weights, a grid (rig = nullptr) u and v.
 struct EditPoint {
@@ -50,9 +53,14 @@ struct EditPoint {
   SolidId solid;                          // that the point is tied to; invalid: none
   const PointWeights* weights = nullptr;  // of an imported mesh, by joints of the rig
 };
+// Only quantities that `changes` are touched.
+using QuantityMask = std::array<bool, kSkinQuantities>;
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
                     std::span<const EditPoint> points, const RiggedModel* rig,
-                    const VectorArray& rest, SkinQuantities& quantities);
+                    const VectorArray& rest, const QuantityMask& changes,
+                    SkinQuantities& quantities);
+// Where a brush is in the rest posture; none if its joint is not found.
+std::optional<Vec3> brushCenter(const SkinBrushDef& brush, const SkinBase& base);
 
 // Fills what stepping needs to know of the points from their quantities and areas (m²).
 // `tied`: storage indices of the points with a tissue strand.

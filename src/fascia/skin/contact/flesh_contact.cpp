@@ -6,6 +6,7 @@
 
 #include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
+#include <fascia/skin/contact/way_out.h>
 
 namespace fascia {
 namespace {
@@ -13,6 +14,9 @@ namespace {
 // Bound of how far a point goes when pushed out, over the sum of the depths: along a crease's flank
 // the way is longer than the depth.
 constexpr float kPushMargin = 8;
+// A solid's distance is an estimate whose error grows with the square of the depth: so far out of
+// it a point may be pushed without looking again.
+constexpr float kSure_m = 1e-3f;
 // Gap of a block and a solid that have not been tested yet.
 constexpr float kUnknown = -1e30f;
 // Blocks handed to a thread at once; smaller skins are not worth waking threads for.
@@ -26,7 +30,7 @@ bool near(const BlockBox& a, const Box& b, float reach) {
 
 // One block of points against the solids of a field.
 struct BlockTest {
-  const Field& field;
+  const DistanceField& field;
   const PointBlock& block;
   ContactLanes& lanes;
   std::span<std::int32_t> nearby;  // scratch for as many as the field has solids
@@ -57,16 +61,44 @@ struct BlockTest {
     return deepest;
   }
 
-  // Like visit(true), until no point is inside any solid or `passes` are used up. Returns the sum
-  // of the passes' depths.
+  // Like visit(true), until no point is inside any solid; what `passes` have not brought out leaves
+  // all solids at once. Returns a bound of how far points went: the sum of the passes' depths.
   float leaveSolids(int passes, float retest_m) {
     float moved = 0;
     for (int pass = 0; pass < passes; ++pass) {
       const float depth = visit(true);
       moved += depth;
-      if (nearbyCount == 1 || !mustRetest(retest_m)) break;
+      const bool again =
+          (nearbyCount > 1 && mustRetest(retest_m)) || (depth > kSure_m && depthLeft() > retest_m);
+      if (!again) return moved;
     }
-    return moved;
+    return moved + leaveTogether(retest_m);
+  }
+
+  float leaveTogether(float retest_m) {
+    float farthest = 0;
+    for (std::size_t l = 0; l < block.count; ++l) {
+      if (!(lanes.pushed[l] > retest_m)) continue;
+      const Eigen::Vector3f from(lanes.place.x[l], lanes.place.y[l], lanes.place.z[l]);
+      const Eigen::Vector3f to =
+          leaveAll(field, nearby.first(nearbyCount), double{lanes.fat[l]}, from.cast<double>())
+              .cast<float>();
+      lanes.place.x[l] = to.x(), lanes.place.y[l] = to.y(), lanes.place.z[l] = to.z();
+      farthest = std::max(farthest, (to - from).norm());
+    }
+    return farthest + visit(true);
+  }
+
+  // How deep the deepest point is where it has come to; changes nothing that visit() found.
+  float depthLeft() const {
+    float deepest = 0;
+    for (const std::int32_t s : nearby.first(nearbyCount)) {
+      field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
+                     lanes.normal.view(block.count));
+      for (std::size_t l = 0; l < block.count; ++l)
+        deepest = std::max(deepest, lanes.fat[l] - lanes.distance[l]);
+    }
+    return deepest;
   }
 
   // Whether a point that was pushed out of one solid may have been pushed into another.
@@ -78,7 +110,7 @@ struct BlockTest {
   }
 
   // Each point's from its nearest solid: solids that swell take long to say how fast.
-  void readFleshVelocities() {
+  void readFleshVelocities(const MovingField& moving) {
     ContactLanes::Lanes3 place, velocity;
     std::array<std::size_t, PointBlock::kCapacity> lane;
     for (const std::int32_t s : nearby.first(nearbyCount)) {
@@ -91,7 +123,7 @@ struct BlockTest {
         lane[count++] = l;
       }
       if (count == 0) continue;
-      field.velocity(SolidId(s), place.view(count), velocity.view(count));
+      moving.velocity(SolidId(s), place.view(count), velocity.view(count));
       for (std::size_t i = 0; i < count; ++i) {
         lanes.fleshVelocity.x[lane[i]] = velocity.x[i];
         lanes.fleshVelocity.y[lane[i]] = velocity.y[i];
@@ -101,7 +133,7 @@ struct BlockTest {
   }
 };
 
-void readBoxes(const Field& field, std::vector<Box>& boxes) {
+void readBoxes(const DistanceField& field, std::vector<Box>& boxes) {
   boxes.resize(field.solidCount());
   for (std::size_t s = 0; s < boxes.size(); ++s)
     boxes[s] = field.bounds(SolidId(static_cast<std::int64_t>(s)));
@@ -112,7 +144,7 @@ void readBoxes(const Field& field, std::vector<Box>& boxes) {
 FleshContact::FleshContact(std::vector<PointBlock> blocks)
     : blocks_(std::move(blocks)), results_(blocks_.size()) {}
 
-FleshContact::Result FleshContact::project(const Field& field, const PointModel& points,
+FleshContact::Result FleshContact::project(const MovingField& field, const PointModel& points,
                                            float reach_m, float restitution, VectorArray& position,
                                            VectorArray& velocity, PointSurroundings& around) {
   FASCIA_ASSERT(velocity.size() == position.size() && points.fat.size() == position.size(),
@@ -151,7 +183,7 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
       }
       for (float& gap : gaps) gap -= kPushMargin * pushed;
       results_[b].maxCorrection_m = pushed;
-      if (any) test.readFleshVelocities();
+      if (any) test.readFleshVelocities(field);
       const std::size_t count = blocks_[b].count;
       const ContactFindings found{lanes.place.view(count), lanes.nearest.data(),
                                   lanes.nearestNormal.view(count), lanes.fleshVelocity.view(count)};
@@ -168,11 +200,12 @@ float FleshContact::approach(const BlockMotion& block, const SolidMotion& solid)
   const Eigen::Vector3f center(block.center[0], block.center[1], block.center[2]);
   const Eigen::Vector3f way(block.way[0], block.way[1], block.way[2]);
   const Eigen::Vector3f matter = solid.change * (center - solid.origin) + solid.shift;
-  return (way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m;
+  return solid.steepness *
+         ((way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m);
 }
 
 // The motion of each solid since the last call, from its outline.
-void FleshContact::followSolids(const Field& field) {
+void FleshContact::followSolids(const MovingField& field) {
   const std::size_t solids = boxes_.size();
   const bool first = motions_.size() != solids;
   if (first) {
@@ -183,12 +216,13 @@ void FleshContact::followSolids(const Field& field) {
   for (std::size_t s = 0; s < solids; ++s) {
     const SolidId id(static_cast<std::int64_t>(s));
     const Transform frame = field.frame(id);
-    const Field::Outline& outline = field.outline(id);
+    const MovingField::Outline& outline = field.outline(id);
     Corners now;
     for (std::size_t c = 0; c < kCorners; ++c) now[c] = frame.point(outline[c]).cast<float>();
     Eigen::Vector3f* before = corners_.data() + s * kCorners;
     if (first) std::copy(now.begin(), now.end(), before);
     motions_[s] = motionBetween(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
+    motions_[s].steepness = static_cast<float>(field.lipschitz(id));
     std::copy(now.begin(), now.end(), before);
   }
 }
@@ -220,7 +254,7 @@ FleshContact::SolidMotion FleshContact::motionBetween(
   return m;
 }
 
-float FleshContact::deepest(const Field& field, const PointModel& points,
+float FleshContact::deepest(const DistanceField& field, const PointModel& points,
                             const VectorArray& position) const {
   std::vector<Box> boxes;
   readBoxes(field, boxes);

@@ -1,7 +1,9 @@
 #include <fascia/skin/grid/grid_wrap.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
@@ -104,6 +106,20 @@ VectorArray waysOfMatter(const GridWrap& wrap, const FollowInput& input,
   return way;
 }
 
+// Whether all matter is where it was: then it has gone no way.
+bool isAsWrapped(const GridWrap& wrap, const FollowInput& input) {
+  for (std::size_t s = 0; s < wrap.flesh.solidCount(); ++s) {
+    const SolidId id(static_cast<std::int64_t>(s));
+    const Solid &was = wrap.posedFlesh.solid(id), &is = input.posedFlesh.solid(id);
+    if (wrap.flesh.def(id).solid != input.flesh.def(id).solid ||
+        wrap.posedFlesh.frame(id) != input.posedFlesh.frame(id))
+      return false;
+    for (std::size_t i = 0; i < was.parameterCount(); ++i)
+      if (was.parameter(static_cast<int>(i)) != is.parameter(static_cast<int>(i))) return false;
+  }
+  return true;
+}
+
 void setEndWays(const GridWrap& wrap, const FollowInput& input, VectorArray& way) {
   const GridLayout& g = wrap.layout;
   for (int e = 0; e < 2; ++e) {
@@ -114,32 +130,51 @@ void setEndWays(const GridWrap& wrap, const FollowInput& input, VectorArray& way
   }
 }
 
-// Points of a row to a distance of the fat from every solid.
-void pushRowOut(const Field& field, float fat_m, const Vectors& row) {
-  VectorArray normal(row.count);
-  FloatArray distance(row.count);
+// Few points lie together in a small box, which few solids are near to.
+constexpr std::size_t kPushedTogether = 32;
+
+bool isNear(const Box& a, const Box& b, double reach_m) {
+  return ((a.low.array() - reach_m) <= b.high.array()).all() &&
+         ((a.high.array() + reach_m) >= b.low.array()).all();
+}
+
+// Points that lie together to a distance of the fat from every solid.
+void pushOut(const DistanceField& field, std::span<const Box> boxes, float fat_m,
+             const Vectors& points) {
+  std::array<float, kPushedTogether> distance;
+  std::array<std::array<float, kPushedTogether>, 3> normal;
+  const Vectors normals{normal[0].data(), normal[1].data(), normal[2].data(), points.count};
   bool moved = true;
   for (int pass = 0; moved && pass < kPushPasses; ++pass) {
     moved = false;
+    Box here;
+    for (std::size_t i = 0; i < points.count; ++i)
+      here.add(Vec3(points.x[i], points.y[i], points.z[i]));
     for (std::size_t s = 0; s < field.solidCount(); ++s) {
-      field.evaluate(SolidId(static_cast<std::int64_t>(s)), row, distance.data(),
-                     view(normal, 0, row.count));
-      for (std::size_t i = 0; i < row.count; ++i) {
+      if (!isNear(here, boxes[s], double{fat_m})) continue;
+      field.evaluate(SolidId(static_cast<std::int64_t>(s)), points, distance.data(), normals);
+      for (std::size_t i = 0; i < points.count; ++i) {
         const float depth = fat_m - distance[i];
         if (!(depth > 0)) continue;
-        row.x[i] += depth * normal.x[i];
-        row.y[i] += depth * normal.y[i];
-        row.z[i] += depth * normal.z[i];
+        points.x[i] += depth * normals.x[i];
+        points.y[i] += depth * normals.y[i];
+        points.z[i] += depth * normals.z[i];
         moved = true;
       }
     }
   }
 }
 
-void pushOut(const GridLayout& g, const Field& field, double fat_m, VectorArray& r) {
+void pushRowsOut(const GridLayout& g, const DistanceField& field, double fat_m, VectorArray& r) {
+  std::vector<Box> boxes;
+  for (std::size_t s = 0; s < field.solidCount(); ++s)
+    boxes.push_back(field.bounds(SolidId(static_cast<std::int64_t>(s))));
+  const auto columns = static_cast<std::size_t>(g.columns);
   parallelFor(static_cast<std::size_t>(g.rows - 2), [&](std::size_t row) {
-    pushRowOut(field, static_cast<float>(fat_m),
-               view(r, g.row(static_cast<int>(row) + 1), static_cast<std::size_t>(g.columns)));
+    for (std::size_t i = 0; i < columns; i += kPushedTogether)
+      pushOut(
+          field, boxes, static_cast<float>(fat_m),
+          view(r, g.row(static_cast<int>(row) + 1) + i, std::min(kPushedTogether, columns - i)));
   });
 }
 
@@ -204,7 +239,8 @@ void placeIn(const PosedFlesh& flesh, FollowedGrid& grid) {
 FollowedGrid follow(const GridWrap& wrap, const FollowInput& input) {
   const GridLayout& g = wrap.layout;
   FollowedGrid out = followMatter(wrap, input.flesh);
-  VectorArray way = waysOfMatter(wrap, input, out.placements);
+  VectorArray way = isAsWrapped(wrap, input) ? VectorArray(wrap.rest.size())
+                                             : waysOfMatter(wrap, input, out.placements);
   const bool matterMoves = anyWay(way);
   setEndWays(wrap, input, way);
   const double fatChange_m = input.fat_m - wrap.fat_m;
@@ -216,7 +252,7 @@ FollowedGrid follow(const GridWrap& wrap, const FollowInput& input) {
   }
   fillPads(g, out.rest);
   if (fatChange_m != 0) addFat(g, fatChange_m, out.rest);
-  pushOut(g, input.posedFlesh, input.fat_m, out.rest);
+  pushRowsOut(g, input.posedFlesh, input.fat_m, out.rest);
   fillPads(g, out.rest);
   placeIn(input.posedFlesh, out);
   return out;

@@ -62,6 +62,18 @@ struct GridRest {
   FloatArray area_m2;  // of the rest shape, per point
 };
 
+// What decides a grid's quantities besides its rest shape and strands. Constant.
+struct GridQuantitySource {
+  SkinDef def;
+  std::vector<Vec3> brushCenters_m;  // in the rest posture
+
+  // Whether regions, brushes and saved lists do to a quantity what they did.
+  bool editsAlike(const GridQuantitySource& other) const {
+    return def.regions == other.def.regions && def.brushes == other.def.brushes &&
+           def.points == other.def.points && brushCenters_m == other.brushCenters_m;
+  }
+};
+
 // What a wrap becomes around other solids and joints of the same structure, or with other fat.
 struct FollowedGrid {
   VectorArray rest;

@@ -8,6 +8,14 @@
 namespace fascia {
 namespace {
 
+constexpr int kNewtonSteps = 12;
+constexpr double kBracket = 1e-7;
+constexpr std::size_t kSums = 8;  // side by side: one would wait for itself
+
+double sumOf(const double (&parts)[kSums]) {
+  return std::accumulate(parts, parts + kSums, 0.0);
+}
+
 double neededMass(double stiffness_N_per_m, double h) {
   return 0.25 * kStabilityMargin * h * h * stiffness_N_per_m;
 }
@@ -46,18 +54,38 @@ double longestStep(const PointModel& p, double share) {
   }
   const auto addedShare = [&](double h) {
     const double perStiffness = neededMass(1, h);
-    constexpr std::size_t kSums = 8;  // side by side: one would wait for itself
     double added[kSums] = {};
     for (std::size_t k = 0; k < mass.size(); ++k)
       added[k % kSums] += std::max(0.0, perStiffness * stiffness[k] - mass[k]);
-    return own > 0 ? std::accumulate(added, added + kSums, 0.0) / own : 0.0;
+    return own > 0 ? sumOf(added) / own : 0.0;
   };
   double low = 1e-7, high = 1.0 / 12;
   if (addedShare(high) <= share) return high;
+  // The share grows with h², convex: Newton's way from the high side never passes the root. What it
+  // brackets need not be asked again below.
+  double tooLong = high, shortEnough = low;
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    const double perStiffness = neededMass(1, tooLong);
+    double added[kSums] = {}, slope[kSums] = {};  // over neededMass(1, h)
+    for (std::size_t k = 0; k < mass.size(); ++k) {
+      const double lacking = perStiffness * stiffness[k] - mass[k];
+      added[k % kSums] += std::max(0.0, lacking);
+      slope[k % kSums] += lacking > 0 ? stiffness[k] : 0.0;
+    }
+    const double root =
+        perStiffness - (sumOf(added) - share * own) / std::max(1e-300, sumOf(slope));
+    const double h = tooLong * std::sqrt(std::max(0.0, root / perStiffness)) * (1 + kBracket);
+    if (!(h < tooLong * (1 - kBracket))) break;
+    tooLong = h;
+  }
+  if (addedShare(tooLong) <= share) tooLong = high;  // rounding
+  const double below = tooLong * (1 - 4 * kBracket);
+  if (addedShare(below) <= share) shortEnough = below;
   // To a hundred-millionth: steps divide intervals into whole numbers anyway.
   for (int i = 0; i < 30; ++i) {
     const double middle = std::sqrt(low * high);
-    (addedShare(middle) <= share ? low : high) = middle;
+    const bool fits = middle <= shortEnough || (middle < tooLong && addedShare(middle) <= share);
+    (fits ? low : high) = middle;
   }
   return low;
 }
