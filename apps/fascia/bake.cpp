@@ -15,7 +15,6 @@
 #include "example_files.h"
 #include "grid_bake.h"
 #include "input_kind.h"
-#include "interrupt.h"
 #include "outputs.h"
 #include "rig_bake.h"
 #include "scene_bake.h"
@@ -136,14 +135,12 @@ void checkFiles(const Cast& cast, const BakeOptions& options) {
   if (!options.stats.empty())
     for (std::size_t k = 1; k < cast.takes.size(); ++k)
       files.push_back(fileOf(options.stats, cast.takes, k));
-  checkOverwriting(cast.inputs, files,
-                   options.stats.empty() ? "" : fileOf(options.stats, cast.takes, 0));
+  checkOverwriting(files, options.stats.empty() ? "" : fileOf(options.stats, cast.takes, 0));
 }
 
 std::vector<Shot> shootAll(const Cast& cast, const BakeOptions& options, const Console& console) {
   std::vector<Shot> shots;
   for (const Take& take : cast.takes) {
-    if (interruptSignal() != 0) throw Interrupted{};
     shots.push_back(shoot(cast, take, options.simulation, console));
     if (!take.cycle) continue;
     console.detail(fmt::format("{}: a cycle; its ends were {:.2g} mm apart, and meet now",
@@ -159,7 +156,6 @@ void bakeCharacter(BakeOptions& options, const Console& console) {
   const std::vector<Shot> shots = shootAll(cast, options, console);
   Made made;
   for (const std::string& path : options.outputs) {
-    if (interruptSignal() != 0) throw Interrupted{};
     writeOutput(cast, shots, path, options, console, made);
   }
   std::vector<const Recording*> recordings;
@@ -193,6 +189,7 @@ void bakeFile(BakeOptions& options, const Console& console) {
 void bake(BakeOptions& options, const Console& console) {
   checkFolders(options.outputs);
   checkFolders({options.stats});
+  checkOverwriting(options.outputs, options.stats);
   const ThreadLimit threads(options.simulation.threads);
   withInput(options.file, {.command = "bake", .character = true, .scene = true},
             [&] { bakeFile(options, console); });

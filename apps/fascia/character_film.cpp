@@ -40,7 +40,8 @@ Footage cachedFootage(const std::string& input) {
 class CharacterFilm final : public Film {
  public:
   // cache: the file that the footage was read from, if it was.
-  CharacterFilm(Footage footage, std::string cache, const FilmLook& look, const Console& console)
+  CharacterFilm(Footage footage, const std::string& input, std::string cache, const FilmLook& look,
+                const Console& console)
       : footage_(std::move(footage)),
         cache_(std::move(cache)),
         player_(footage_.character, footage_.recording) {
@@ -49,7 +50,7 @@ class CharacterFilm final : public Film {
     options_.layers = parseLayers(look.layers);
     if (!look.camera.empty()) options_.camera = parseCamera(look.camera);
     options_.aspect = look.aspect;
-    options_.skin_texture = toPixels(footage_.texture);
+    options_.skin_texture = toPixels(footage_.texture, input);
     options_.rig_surface = rigSurface(footage_.character, console);
     reach_ = motionReach(
         footage_.character,
@@ -86,8 +87,8 @@ std::unique_ptr<Film> makeCharacterFilm(const std::string& input, SimulationOpti
   const bool cached = endingOf(input) == ".fcache";
   Footage footage =
       cached ? cachedFootage(input) : simulateFootage(input, options, only_s, console);
-  return std::make_unique<CharacterFilm>(std::move(footage), cached ? input : std::string(), look,
-                                         console);
+  return std::make_unique<CharacterFilm>(std::move(footage), input, cached ? input : std::string(),
+                                         look, console);
 }
 
 }  // namespace fascia

@@ -13,7 +13,8 @@ class App;
 namespace fascia {
 
 // How a subcommand talks: text for a person, or one JSON document on stdout for a machine.
-// Errors and hints go to stderr either way.
+// Errors and hints go to stderr either way. Whatever would move a terminal's cursor is shown as an
+// escape (see printable.h): names come from strangers' files.
 class Console {
  public:
   void addFlags(CLI::App& command);        // --json, --quiet
@@ -29,10 +30,18 @@ class Console {
   // Every issue a line on stderr; with --json the answer, unless one was given.
   void fail(const Error& error) const;
 
+  void print(const std::string& text) const;  // stdout, as it is: of our own
+  // Every line of a usage message, to stderr.
+  void refuse(const std::string& usage) const;
+  // Whether all that was said reached standard output. If not, tells, or ends the program as a
+  // closed pipe does.
+  bool delivered() const;
+
   // Whether to tell how far the work is: someone wants text.
   bool showsProgress() const;
 
  private:
+  mutable int writeFault_ = 0;  // errno of the first
   bool json_ = false;
   mutable bool answered_ = false;
   mutable std::vector<Issue> warnings_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,11 @@ class Facts {
 
   // Lines that stand for themselves, to be copied into a file.
   void addLines(const std::string& name, Json value, std::string lines) {
-    while (lines.ends_with('\n')) lines.pop_back();
-    lines_.push_back(std::move(lines));
+    while (!lines.empty()) {
+      const std::size_t end = std::min(lines.find('\n'), lines.size());
+      lines_.push_back(lines.substr(0, end));
+      lines.erase(0, end + 1);
+    }
     answer_.set(name, std::move(value));
   }
 

@@ -19,6 +19,7 @@
 #include "outputs.h"
 #include "progress.h"
 #include "shell_word.h"
+#include "simulation_options.h"
 
 namespace fascia {
 namespace {
@@ -139,19 +140,18 @@ void flesh(const FleshOptions& options, const Console& console) {
   checkFolders({options.output, options.report});
   refuseToOverwrite(options.output, options.force);
   RigFile rig = placeRig(options);
+  checkOverwriting({options.output, rig.copy}, options.report);
   refuseToOverwrite(rig.copy, options.force);
   const ThreadLimit threads(options.threads);
   std::shared_ptr<const RiggedModel> shared;
+  FleshedCharacter made;
   withInput(options.input, {.command = "flesh", .model = true}, [&] {
     shared = std::make_shared<const RiggedModel>(readRiggedModel(options.input, {options.scale}));
-  });
-  const RiggedModel& model = *shared;
-  FleshedCharacter made;
-  {
     ProgressBar progress(console, "fitting flesh");
     progress.update(0);  // how long it takes is not known
     made = fleshCharacter(shared, options.fit, options.dials);
-  }
+  });
+  const RiggedModel& model = *shared;
   const FleshFit& fit = made.fit;
   sayTable(fit, console);
   for (const auto& notes : {model.notes, fit.notes}) {
@@ -168,11 +168,10 @@ void flesh(const FleshOptions& options, const Console& console) {
   writeCharacterFile(made.def, options.output);
   console.say("wrote " + options.output);
   const std::string character = shellWord(options.output), name = nameOf(options.output);
-  console.say(
-      fmt::format("next: fascia render {} --layers muscle,skeleton -o {}\n"
-                  "      fascia bake {}{} -o {}",
-                  character, shellWord(name + ".png"), character, motionOption(livelyMotion(model)),
-                  shellWord(name + ".alive.glb")));
+  console.say(fmt::format("next: fascia render {} --layers muscle,skeleton -o {}", character,
+                          shellWord(name + ".png")));
+  console.say(fmt::format("      fascia bake {}{} -o {}", character,
+                          motionOption(livelyMotion(model)), shellWord(name + ".alive.glb")));
   console.answer(Json::Object{{"ok", true}, {"output", options.output}, {"fit", report}});
 }
 
@@ -192,17 +191,17 @@ void addFlesh(CLI::App& program, Console& console) {
       ->check(endsIn({".json"}));
   command.add_option("--scale", options->scale, "Of all lengths; 0.01 for a file in centimetres")
       ->type_name("FACTOR")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(numberIn(1e-6, 1e6));
   command
       .add_option("--fat", options->fit.fat_share,
                   "Thickness of fat as a share of the body's local radius")
       ->type_name("SHARE")
-      ->check(CLI::Range(0.01, 0.9))
+      ->check(numberIn(0.01, 0.9))
       ->capture_default_str();
   const auto dial = [&](const std::string& name, double& value, const std::string& help) {
     command.add_option(name, value, help)
         ->type_name("0…1")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(numberIn(0, 1))
         ->capture_default_str();
   };
   dial("--jiggle", options->dials.jiggle, "Flesh that moves by itself: 0 none, 1 jelly");
@@ -216,7 +215,7 @@ void addFlesh(CLI::App& program, Console& console) {
   command
       .add_option("--threads", options->threads, "Threads to use; 0 = all. The result is the same")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024));
+      ->check(numberIn(0, 1024));
   command.add_flag("--force", options->force, "Overwrite files");
   console.addFlags(command);
   command.footer(kFleshFooter);

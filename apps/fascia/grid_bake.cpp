@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "interrupt.h"
 #include "outputs.h"
 #include "progress.h"
 
@@ -55,9 +54,7 @@ GridBakeReport writeGridBake(const Character& character,
   fit.morphs.tolerance_m = asked ? 0 : kTolerance * heightOf_m(*recordings.front());
   fit.morphs.sparsity = 0.01;
   ProgressBar progress(console, "fitting the skin");
-  fit.bones.progress = [&](double share) {
-    if (!progress.update(share)) throw Interrupted{};
-  };
+  fit.bones.progress = [&](double share) { progress.update(share); };
   return writeGridGlb(character, recordings, fit, path);
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <new>
+#include <stdexcept>
 #include <vector>
 
 #include <fmt/format.h>
@@ -220,6 +222,13 @@ std::string hintFor(const std::string& path, InputKind kind, const Wanted& wante
   }
 }
 
+// Faults that name no file are of what this one leads to.
+std::vector<Issue> named(std::vector<Issue> issues, const std::string& path) {
+  for (Issue& issue : issues)
+    if (issue.where.file.empty()) issue.where.file = path;
+  return issues;
+}
+
 }  // namespace
 
 InputKind kindOfInput(const std::string& path) {
@@ -244,9 +253,13 @@ InputKind kindOfInput(const std::string& path) {
 void withInput(const std::string& path, const Wanted& wanted, const std::function<void()>& work) {
   try {
     work();
-  } catch (const Error&) {
+  } catch (const std::bad_alloc&) {
+    throw fileError(path, "needs more memory than there is");
+  } catch (const std::length_error&) {
+    throw fileError(path, "needs more memory than there is");
+  } catch (const Error& error) {
     const InputKind kind = kindOfInput(path);
-    if (takes(wanted, kind)) throw;
+    if (takes(wanted, kind)) throw Error(named(error.issues(), path));
     throw fileError(path, fmt::format("{}, expected {}", described(kind), expected(wanted)),
                     hintFor(path, kind, wanted));
   }

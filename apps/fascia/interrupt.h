@@ -2,16 +2,19 @@
 
 namespace fascia {
 
-// Ctrl-C and a polite kill only raise a flag, so that work stops between frames and every
-// half-written file is taken back before the program goes.
+// From here on Ctrl-C and a polite kill end the program at once, whatever it is at, the way the
+// signal would have, so that shells and scripts see it; but first what must not stay behind is
+// removed: half-written files, other programs at work. To be called before any thread is started.
 void watchInterrupts();
 
-int interruptSignal();  // the signal that came, or 0
+// A reader that went away and a file that may grow no more are errors of that write, not our end.
+void keepWriteErrors();
 
-// Ends the program the way the signal would have, so that shells and scripts see it.
-[[noreturn]] void dieOfInterrupt();
+// Descriptors 0 to 2 are taken, if only by nothing: else the first files that are opened would be
+// standard input and output.
+void holdStandardStreams();
 
-// Thrown where work stops.
-struct Interrupted {};
+// Ends the program as the signal would have.
+[[noreturn]] void dieOf(int signal);
 
 }  // namespace fascia

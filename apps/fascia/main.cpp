@@ -1,6 +1,9 @@
 #include <CLI/CLI.hpp>
 
 #include <new>
+#include <sstream>
+
+#include <fascia/io/file/inputs.h>
 
 #include "commands.h"
 #include "console.h"
@@ -28,9 +31,11 @@ int run(CLI::App& program, fascia::Console& console, int argc, char** argv) {
     program.parse(argc, argv);
     return ok;
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? ok : badUsage;
-  } catch (const fascia::Interrupted&) {
-    fascia::dieOfInterrupt();
+    std::ostringstream help, usage;
+    const int code = program.exit(error, help, usage);
+    console.print(help.str());
+    console.refuse(usage.str());
+    return code == 0 ? ok : badUsage;
   } catch (const fascia::Error& error) {
     console.fail(error);
   } catch (const std::bad_alloc&) {
@@ -44,7 +49,10 @@ int run(CLI::App& program, fascia::Console& console, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  fascia::holdStandardStreams();
+  fascia::keepWriteErrors();
   fascia::watchInterrupts();
+  const fascia::InputGuard nothingReadIsWrittenOver;
   fascia::Console console;
   CLI::App program(
       "Layered elastic characters: a skeleton, flesh on it, and a skin that lives; and scenes of "
@@ -64,5 +72,6 @@ int main(int argc, char** argv) {
   fascia::addInfo(program, console);
   fascia::addFlesh(program, console);
   fascia::addBench(program, console);
-  return run(program, console, argc, argv);
+  const int code = run(program, console, argc, argv);
+  return console.delivered() ? code : badInput;
 }

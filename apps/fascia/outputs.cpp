@@ -9,6 +9,8 @@
 
 #include <fascia/base/hash.h>
 #include <fascia/io/documents/stats_writer.h>
+#include <fascia/io/file/inputs.h>
+#include <fascia/io/file/temporary_file.h>
 
 namespace fascia {
 
@@ -33,7 +35,7 @@ void checkFolders(const std::vector<std::string>& paths) {
   std::vector<Issue> issues;
   for (const std::string& path : paths) {
     if (path.empty()) continue;
-    const fs::path folder = fs::path(path).parent_path();
+    const fs::path folder = fs::path(endOfLinks(path)).parent_path();
     const std::string shown = folder.empty() ? "." : folder.string();
     std::error_code unreadable;
     if (fs::is_directory(path, unreadable))
@@ -46,30 +48,18 @@ void checkFolders(const std::vector<std::string>& paths) {
   if (!issues.empty()) throw Error(std::move(issues));
 }
 
-void checkOverwriting(const std::vector<std::string>& inputs,
-                      const std::vector<std::string>& outputs, const std::string& stats) {
-  const auto placeOf = [](const fs::path& path) {
-    return fs::weakly_canonical(fs::absolute(path));
-  };
-  std::vector<fs::path> taken;
-  taken.reserve(inputs.size());
-  for (const std::string& input : inputs) taken.push_back(placeOf(input));
+void checkOverwriting(const std::vector<std::string>& outputs, const std::string& stats) {
   std::vector<std::string> files{stats};
   files.insert(files.end(), outputs.begin(), outputs.end());
+  std::erase(files, std::string());
+  std::vector<fs::path> taken;
   for (const std::string& file : files) {
-    if (file.empty()) continue;
-    const auto found = std::find(taken.begin(), taken.end(), placeOf(file));
-    if (found != taken.end()) {
-      const bool input = found - taken.begin() < static_cast<std::ptrdiff_t>(inputs.size());
-      Issue issue;
-      issue.where.file = file;
-      issue.message =
-          input ? "is read for this, and would be overwritten" : "would be written twice";
-      issue.hint = "choose another name";
-      throw Error(std::move(issue));
-    }
-    taken.push_back(placeOf(file));
+    const fs::path place = fs::weakly_canonical(fs::absolute(endOfLinks(file)));
+    if (std::find(taken.begin(), taken.end(), place) != taken.end())
+      throw fileError(file, "would be written twice", "choose another name");
+    taken.push_back(place);
   }
+  planOutputs(files);
 }
 
 namespace {

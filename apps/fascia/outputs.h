@@ -20,9 +20,9 @@ std::function<std::string(const std::string&)> endsIn(const std::vector<std::str
 // are skipped.
 void checkFolders(const std::vector<std::string>& paths);
 
-// Throws Error if a file would be written over an input, or twice.
-void checkOverwriting(const std::vector<std::string>& inputs,
-                      const std::vector<std::string>& outputs, const std::string& stats);
+// Throws Error if a file would be written twice, or over one that has been read; and lets reading
+// one of them fail from now on.
+void checkOverwriting(const std::vector<std::string>& outputs, const std::string& stats);
 
 // A line about each simulation for a person, the whole statistics for a machine: of one as "stats",
 // of several as a list of "motions"; `more` joins the machine's answer.

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include "interrupt.h"
+#include <fascia/base/printable.h>
 
 namespace fascia {
 namespace {
@@ -29,17 +29,16 @@ ProgressBar::~ProgressBar() {
   if (visible_ && terminal_ && shown_ != start_) std::fputs(kClearLine, stderr);
 }
 
-bool ProgressBar::update(double fraction) {
+void ProgressBar::update(double fraction) {
   const Clock::time_point now = Clock::now();
   if (visible_ && now - shown_ >= (terminal_ ? Clock::duration(kRedraw) : kNextLine)) {
     shown_ = now;
     show(std::clamp(fraction, 0.0, 1.0), std::chrono::duration<double>(now - start_).count());
   }
-  return interruptSignal() == 0;
 }
 
 void ProgressBar::show(double fraction, double spent_s) {
-  const std::string text = progressText(what_, fraction, spent_s);
+  const std::string text = printable(progressText(what_, fraction, spent_s));
   if (terminal_) {
     const int filled = static_cast<int>(fraction * kBarWidth);
     fmt::print(stderr, "{}[{:#>{}}{:.>{}}] {}", kClearLine, "", filled, "", kBarWidth - filled,

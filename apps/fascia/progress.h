@@ -16,8 +16,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // fraction in [0, 1]. False when the person asked to stop.
-  bool update(double fraction);
+  // fraction in [0, 1]
+  void update(double fraction);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -12,7 +12,6 @@
 #include "example_files.h"
 #include "film.h"
 #include "input_kind.h"
-#include "interrupt.h"
 #include "outputs.h"
 #include "progress.h"
 #include "simulation_options.h"
@@ -75,7 +74,7 @@ void shootVideo(Film& film, Size size, const RenderOptions& options, const Conso
                     {.frame_rate_hz = options.frame_rate_hz});
   for (int i = 0; i < frames; ++i) {
     video.add(shooting.at(film.start_s() + i / options.frame_rate_hz));
-    if (!progress.update((i + 1.0) / frames)) throw Interrupted{};
+    progress.update((i + 1.0) / frames);
   }
   video.finish();
   if (!video.hint().empty()) console.hint(video.hint());
@@ -83,7 +82,7 @@ void shootVideo(Film& film, Size size, const RenderOptions& options, const Conso
 
 void render(RenderOptions& options, const Console& console) {
   checkFolders({options.output, options.stats});
-  checkOverwriting({options.input}, {options.output}, options.stats);
+  checkOverwriting({options.output}, options.stats);
   const ThreadLimit threads(options.simulation.threads);
   const Size size = parseSize(options.size);
   const FilmLook look{.camera = options.camera,

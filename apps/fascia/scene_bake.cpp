@@ -1,7 +1,5 @@
 #include "scene_bake.h"
 
-#include <filesystem>
-
 #include <fascia/io/cache/mdd.h>
 #include <fascia/io/cache/pc2.h>
 #include <fascia/io/cache/scene_cache.h>
@@ -10,24 +8,11 @@
 #include <fascia/io/glb_export/scene_gltf.h>
 #include <fascia/world/stage_surface.h>
 
-#include "interrupt.h"
 #include "outputs.h"
 #include "stage_run.h"
 
 namespace fascia {
 namespace {
-
-std::vector<std::string> inputsOf(const SceneBake& bake, const SceneDef& def) {
-  const std::filesystem::path folder = std::filesystem::path(bake.scene).parent_path();
-  std::vector<std::string> out{bake.scene};
-  const auto add = [&](const std::string& name) {
-    if (!name.empty()) out.push_back((folder / name).string());
-  };
-  add(def.script);
-  for (const SceneBodyDef& body : def.bodies) add(body.mesh_file);
-  for (const SceneCharacterDef& character : def.characters) add(character.file);
-  return out;
-}
 
 void writeOutput(const Stage& stage, const StageRecording& recording, const std::string& path) {
   const std::string ending = endingOf(path);
@@ -40,11 +25,10 @@ void writeOutput(const Stage& stage, const StageRecording& recording, const std:
 }  // namespace
 
 void bakeScene(const SceneBake& bake, const Console& console) {
+  checkOverwriting(bake.outputs, bake.stats);
   const Stage stage = prepareStage(bake.scene, bake.simulation, console);
-  checkOverwriting(inputsOf(bake, stage.def()), bake.outputs, bake.stats);
   const StageRecording recording = perform(stage, stageRecordOptions(bake.simulation), console);
   for (const std::string& path : bake.outputs) {
-    if (interruptSignal() != 0) throw Interrupted{};
     writeOutput(stage, recording, path);
     console.say("wrote " + path);
   }

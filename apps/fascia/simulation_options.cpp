@@ -11,7 +11,6 @@
 #include <fascia/io/documents/character_file.h>
 
 #include "input_kind.h"
-#include "interrupt.h"
 #include "progress.h"
 #include "report_map.h"
 
@@ -68,7 +67,15 @@ void SimulationOptions::addTo(CLI::App& command) {
 }
 
 CLI::Validator numberIn(double low, double high) {
-  return CLI::Range(low, high).description("");
+  return CLI::Validator(
+      [low, high](const std::string& text) -> std::string {
+        double number = 0;
+        // Not a number is in no range, whichever way it is compared.
+        if (CLI::detail::lexical_cast(text, number) && number >= low && number <= high) return {};
+        return fmt::format("found {}, expected a number in [{:g}, {:g}]", quotedName(text), low,
+                           high);
+      },
+      "");
 }
 
 BuildOptions SimulationOptions::buildOptions() const {
@@ -141,7 +148,7 @@ Recording simulate(const Character& character, int motion, RecordOptions options
                    const Console& console, const std::string& what) {
   ProgressBar progress(console, what);
   options.progress = [&](double fraction) {
-    if (!progress.update(fraction)) throw Interrupted{};
+    progress.update(fraction);
     return true;
   };
   return record(character, character.source(motion), options);

@@ -66,7 +66,7 @@ Character prepareCharacter(CharacterFile file, SimulationOptions& options, const
 // The index of the motion to use; -1 = the character has none. Throws for an unknown name.
 int chooseMotion(const Character& character, const std::string& name);
 
-// Simulates a motion (-1: the rest posture) with a progress bar. Throws Interrupted on Ctrl-C.
+// Simulates a motion (-1: the rest posture) with a progress bar.
 Recording simulate(const Character& character, int motion, RecordOptions options,
                    const Console& console, const std::string& what = "simulating");
 

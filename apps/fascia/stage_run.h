@@ -16,7 +16,7 @@ Stage prepareStage(const std::string& path, const SimulationOptions& options,
                    const Console& console);
 StageRecordOptions stageRecordOptions(const SimulationOptions& options);
 
-// Performs with a progress bar. Throws Interrupted on Ctrl-C.
+// Performs with a progress bar.
 StageRecording perform(const Stage& stage, StageRecordOptions options, const Console& console);
 
 // A line for each, up to a dozen.

@@ -21,8 +21,7 @@ namespace {
 
 // Motion capture files are put onto the rig; then all are names.
 std::vector<std::string> namesOf(const TakeOptions& takes, const SimulationOptions& options,
-                                 CharacterDef& def, std::vector<std::string>& inputs,
-                                 const Console& console) {
+                                 CharacterDef& def, const Console& console) {
   std::vector<std::string> names;
   bool anyFile = false;
   for (const std::string& motion : takes.motions) {
@@ -38,7 +37,6 @@ std::vector<std::string> namesOf(const TakeOptions& takes, const SimulationOptio
     reportMap(file, model, console);
     names.push_back(model.motions.back().name);
     def.rig->model = std::make_shared<const RiggedModel>(std::move(model));
-    inputs.push_back(motion);
   }
   if (!options.joint_map.empty() && !anyFile)
     throw Error("--joint-map belongs to a motion from a file, such as --motion walk.bvh");
@@ -198,10 +196,7 @@ Cast prepareCast(const std::string& path, const TakeOptions& takes, SimulationOp
                  const Console& console) {
   if (options.seed != 0) throw Error("--seed is for scenes; a character has nothing to scatter");
   CharacterFile file = readCharacterFile(path);
-  std::vector<std::string> inputs{path};
-  if (file.def.rig)
-    inputs.push_back((std::filesystem::path(path).parent_path() / file.def.rig->file).string());
-  std::vector<std::string> names = namesOf(takes, options, file.def, inputs, console);
+  std::vector<std::string> names = namesOf(takes, options, file.def, console);
   if (takes.all == "all") names = allMotions(file.def);
   checkNames(names);
   checkLoop(takes, options, file.def);
@@ -219,7 +214,7 @@ Cast prepareCast(const std::string& path, const TakeOptions& takes, SimulationOp
                                        : name);
   }
   doubles.putInto(file.def);
-  Cast cast{def, buildCharacter(file, options.buildOptions()), std::move(list), std::move(inputs)};
+  Cast cast{def, buildCharacter(file, options.buildOptions()), std::move(list)};
   console.warn(cast.character.warnings());
   for (std::size_t k = 0; k < cast.takes.size(); ++k) {
     cast.takes[k].index = chooseMotion(cast.character, names[k]);

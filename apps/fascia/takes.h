@@ -38,7 +38,6 @@ struct Cast {
   CharacterDef def;  // as the file has it, with motions that were put onto its rig
   Character character;
   std::vector<Take> takes;
-  std::vector<std::string> inputs;  // files that were read
 };
 Cast prepareCast(const std::string& path, const TakeOptions& takes, SimulationOptions& options,
                  const Console& console);

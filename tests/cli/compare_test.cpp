@@ -145,7 +145,7 @@ TEST_F(CliCompare, InterruptedFilmLeavesNothingBehind) {
   const std::vector<std::string> before = files();
   Process film(folder_,
                {"compare", "tube.fascia.json", "-o", "a.gif", "--size", "1280x720", "--fps", "60"});
-  while (film.running() && files().size() == before.size())
+  while (film.running() && !film.hasChild())
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ASSERT_TRUE(film.running()) << "done before it could be interrupted";
   film.send(SIGINT);

@@ -75,6 +75,11 @@ void Process::send(int signal) const {
   if (!ended_) kill(pid_, signal);
 }
 
+bool Process::hasChild() const {
+  const std::string id = std::to_string(pid_);
+  return !ended_ && !readWhole("/proc/" + id + "/task/" + id + "/children").empty();
+}
+
 Outcome Process::wait() {
   int status = 0;
   if (!ended_ && waitpid(pid_, &status, 0) == pid_) note(status);

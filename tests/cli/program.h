@@ -28,6 +28,7 @@ class Process {
 
   bool running();
   void send(int signal) const;
+  bool hasChild() const;  // another program that it has started
   Outcome wait();
 
  private:

@@ -60,5 +60,22 @@ TEST(Containment, ShrinksWhatIsTooLargeToTheMargin) {
   EXPECT_FALSE(shrinkInside(surface, nullptr, 0.01, outside));
 }
 
+// What lies in itself many times would take for ever at the usual number of samples.
+TEST(RestSurface, OfACrowdHasFewerSamplesOfTheSameArea) {
+  RiggedModel crowd;
+  addJoint(crowd, "root", -1, Vec3::Zero());
+  for (int i = 0; i < 100; ++i)
+    addEllipsoid(crowd, Vec3(1e-3 * i, 0, 0), Vec3::Constant(0.5),
+                 [](const Vec3&) { return onlyJoint(0); });
+  const RestSurface many(crowd, {});
+  const RestSurface one(ball(), {});
+  EXPECT_GT(one.samples().size(), 2000u);
+  EXPECT_LT(many.samples().size(), 600u);
+  EXPECT_GT(many.samples().size(), 20u);  // the others are hidden
+  double area_m2 = 0;
+  for (const SurfaceSample& sample : many.samples()) area_m2 += sample.area_m2;
+  EXPECT_NEAR(area_m2 / many.area_m2() + many.hiddenShare(), 1, 0.1);
+}
+
 }  // namespace
 }  // namespace fascia

@@ -127,6 +127,31 @@ TEST(TriangleHierarchy, RaysThroughACubeEnterWhereTheyMust) {
   }
 }
 
+// One after the other, the first crossings are all of them.
+TEST(TriangleHierarchy, AllHitsAreTheFirstAndThoseBehind) {
+  const TriangleMesh cube = unitCube();
+  const TriangleHierarchy hierarchy(cube);
+  Random random(5);
+  std::vector<TriangleHierarchy::Hit> hits;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 inside(random.uniform(), random.uniform(), random.uniform());
+    const Vec3 origin = Vec3::Constant(0.5) + 3 * randomPoint(random).normalized();
+    const Vec3 direction = inside - origin;
+    hierarchy.allHits(origin, direction, 1e150, hits);
+    ASSERT_EQ(hits.size(), 2u);
+    const auto first = hierarchy.firstHit(origin, direction);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(hits[0].triangle, first->triangle);
+    EXPECT_EQ(hits[0].t, first->t);
+    const auto again = hierarchy.hitOf(hits[1].triangle, origin, direction);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->t, hits[1].t);
+    EXPECT_GT(hits[1].t, 1);
+    hierarchy.allHits(origin, direction, 1, hits);
+    EXPECT_EQ(hits.size(), 1u);
+  }
+}
+
 TEST(TriangleHierarchy, OfAnEmptyMeshFindsNothing) {
   const TriangleMesh empty;
   const TriangleHierarchy hierarchy(empty);

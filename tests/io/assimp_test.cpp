@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+
+#include <sys/stat.h>
 
 #include <fascia/base/error.h>
 #include <fascia/io/file/child_process.h>
@@ -125,6 +128,22 @@ TEST(Assimp, ReadsAnFbxAsTheGltfThatItWasMadeFrom) {
     }
   }
   EXPECT_GT(same, 20u);
+}
+
+// What a file leads to beside itself must neither hold it up nor be a device, a pipe or another's.
+TEST(Assimp, OpensPlainNeighboursOnly) {
+  const sample::Folder folder;
+  std::filesystem::create_directory(folder / "folder.mtl");
+  std::filesystem::create_symlink("/dev/zero", folder / "link.mtl");
+  ASSERT_EQ(mkfifo((folder / "pipe.mtl").c_str(), 0600), 0);
+  for (const std::string& library :
+       {std::string("pipe.mtl"), folder / "pipe.mtl", std::string("./pipe.mtl"),
+        std::string("link.mtl"), std::string("folder.mtl"), std::string("../../dev/zero"),
+        std::string("/dev/zero")}) {
+    write(folder / "a.obj",
+          "mtllib " + library + "\nusemtl seen\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_THAT(importErrorOf(folder / "a.obj"), testing::HasSubstr("needs a rig")) << library;
+  }
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST(Cache, ComesBackExactly) {
   const sample::Folder folder;
   const CharacterDef def = readCharacterText(sample::kFull).def;
   const Recording in = sample::tube(3, 6);
-  const Texture texture{encodePng(gradient(4, 4))};
+  const Texture texture{encodePng(gradient(4, 4)), {}};
   writeCache(def, in, folder / "a.fcache", &texture);
   const Cache cache = readCache(folder / "a.fcache");
   EXPECT_EQ(characterText(cache.def), characterText(def));

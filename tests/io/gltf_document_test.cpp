@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <numeric>
 #include <random>
@@ -414,6 +415,35 @@ TEST(GltfDocument, RealCharactersComeBackWhole) {
   for (std::size_t m = 0; m < a.motions.size(); ++m) {
     EXPECT_EQ(a.motions[m].translation_m, b.motions[m].translation_m);
   }
+}
+
+TEST(GltfFiles, BuffersOfOneFileAreReadOnceAndWrittenOnce) {
+  const sample::Folder folder;
+  writeFileWhole(folder / "data.bin", std::string(1 << 20, 'x'));
+  std::filesystem::create_symlink("data.bin", folder / "same.bin");
+  std::string buffers, views;
+  for (int i = 0; i < 4000; ++i) {
+    const std::string end = i == 0 ? "" : ",";
+    const std::string name = i % 2 == 0 ? "data.bin" : "same.bin";
+    buffers.append(end).append(R"({"byteLength": 1048576, "uri": ")" + name + "\"}");
+    views.append(end).append(R"({"byteLength": 1048576, "buffer": )" + std::to_string(i) + "}");
+  }
+  writeFileWhole(folder / "a.gltf", R"({"asset": {"version": "2.0"}, "buffers": [)" + buffers +
+                                        R"(], "bufferViews": [)" + views + "]}");
+  const GltfDocument document = GltfDocument::read(folder / "a.gltf");
+  EXPECT_EQ(document.viewBytes(0).data(), document.viewBytes(3999).data());
+  EXPECT_LT(document.glb().size(), std::size_t{3} << 20);
+}
+
+TEST(GltfFiles, WhatIsAddedToACopyIsNotInTheOriginal) {
+  GltfDocument document;
+  const std::vector<float> numbers{1, 2, 3};
+  document.addFloats(numbers, "SCALAR");
+  const std::string before = document.glb();
+  GltfDocument copy = document;
+  copy.addFloats(numbers, "SCALAR");
+  EXPECT_EQ(document.viewBytes(0).size(), 12u);
+  EXPECT_EQ(document.glb(), before);
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ TEST(Glb, KhronosValidatorFindsNothing) {
   }
   const sample::Folder folder;
   const SkinnedArm arm;
-  const Texture texture{encodePng({2, 2, std::vector<std::uint8_t>(16, 200)})};
+  const Texture texture{encodePng({2, 2, std::vector<std::uint8_t>(16, 200)}), {}};
   GlbOptions options;
   options.texture = &texture;
   options.solids = true;

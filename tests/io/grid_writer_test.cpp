@@ -214,7 +214,7 @@ TEST_F(MovingArm, KhronosValidatorFindsNothing) {
   if (!module || findProgram("node").empty()) {
     GTEST_SKIP() << "set GLTF_VALIDATOR to the folder of the npm package gltf-validator";
   }
-  const Texture texture{encodePng({2, 2, std::vector<std::uint8_t>(16, 200)})};
+  const Texture texture{encodePng({2, 2, std::vector<std::uint8_t>(16, 200)}), {}};
   for (const GridWay way : {GridWay::bones, GridWay::morphs}) {
     for (const int influences : {4, 8}) {
       GridBakeOptions o = options(way);

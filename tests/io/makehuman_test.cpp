@@ -69,6 +69,26 @@ class SmallHuman : public testing::Test {
                       testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
+// A root without a name would be its own child.
+TEST_F(SmallHuman, ABoneWithoutANameIsRefused) {
+  std::string rig = SmallHuman::rig();
+  rig.replace(rig.find("\"Hips\""), 6, "\"\"");
+  rig.replace(rig.find("\"Hips\""), 6, "\"\"");
+  write("rigs/rig.cmu_mb.json", rig);
+  EXPECT_THAT(errorOf("base.obj"), testing::HasSubstr("rig.cmu_mb.json:"));
+  EXPECT_THAT(errorOf("base.obj"), testing::HasSubstr("a bone without a name"));
+}
+
+TEST_F(SmallHuman, WeightsAreAFileBesideTheRig) {
+  for (const char* name : {"..", ".", "", "../weights", "a/b"}) {
+    write("default.mhskel", R"({"joints": {"low": [0], "high": [5]}, "weights_file": ")" +
+                                std::string(name) +
+                                R"(", "bones": {"Hips": {"head": "low", "tail": "high"}}})");
+    EXPECT_THAT(errorOf("default.mhskel"), testing::HasSubstr("default.mhskel:1")) << name;
+    EXPECT_THAT(errorOf("default.mhskel"), testing::HasSubstr("a file beside it")) << name;
+  }
+}
+
 TEST_F(SmallHuman, KeepsBodyAndEyesInMetresOnTheFloor) {
   const RiggedModel model = readMakeHuman(path("base.obj"));
   ASSERT_EQ(model.parts.size(), 2u);

@@ -192,6 +192,22 @@ TEST(JointMap, NamesTheNearestJointForAGivenNameThatIsNone) {
   }
 }
 
+TEST(JointMap, NamesEveryGivenNameThatIsNoneWithItsLine) {
+  const auto joints = Humanoid{}.joints();
+  const JointMap given = parseJointMap("Hat = Head\nHead = Head\n\nScarf = Shawl\n", "j.map");
+  try {
+    guessJointMap(joints, joints, given);
+    FAIL();
+  } catch (const Error& error) {
+    std::vector<std::pair<int, std::string>> found;
+    for (const Issue& issue : error.issues())
+      found.emplace_back(issue.where.line, issue.message.substr(0, issue.message.find(',')));
+    EXPECT_THAT(found, testing::ElementsAre(std::pair(1, "the joint map names 'Hat'"),
+                                            std::pair(4, "the joint map names 'Scarf'"),
+                                            std::pair(4, "the joint map names 'Shawl'")));
+  }
+}
+
 TEST(JointMap, LeavesOutWhatContradictsTheHierarchy) {
   // The source's foot hangs on the hips, beside its leg.
   const auto source = tree({{"Hips", -1}, {"LeftUpLeg", 0}, {"LeftLeg", 1}, {"LeftFoot", 0}});

@@ -47,6 +47,20 @@ TEST(Sandbox, ReadsNoBytecode) {
   EXPECT_NE(issue.message.find("binary chunk"), std::string::npos) << issue.message;
 }
 
+TEST(Sandbox, ReadsTextWithAByteOrderMark) {
+  EXPECT_EQ(logOf("\xef\xbb\xbflog('read')"), "read");
+}
+
+// Each update is within its limit, but there is no end of them.
+TEST(Sandbox, StopsARunThatTakesTooMuchInAll) {
+  ScriptLimits limits;
+  limits.instructions = 200'000;
+  const Issue issue =
+      issueOf("while true do for i = 1, 10000 do end wait(0.001) end", limits);
+  EXPECT_NE(issue.message.find("200000 instructions in all"), std::string::npos) << issue.message;
+  EXPECT_EQ(issueOf("while true do for i = 1, 10000 do end wait(0.5) end", limits).message, "");
+}
+
 TEST(Sandbox, StopsLoopsThatNeverWait) {
   const char* const loops[] = {
       "while true do end",

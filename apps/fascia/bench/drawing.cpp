@@ -17,7 +17,6 @@
 #include "console.h"
 #include "example_files.h"
 #include "film.h"
-#include "interrupt.h"
 
 namespace fascia {
 namespace {
@@ -103,7 +102,6 @@ LookCost measureLook(Film& film, Look look, const DrawingOptions& options) {
   });
   std::vector<Span> frames, poses;
   for (const double time_s : times_s) {
-    if (interruptSignal() != 0) throw Interrupted{};
     Scene scene;
     poses.push_back(timed([&] { scene = film.at(time_s); }));
     frames.push_back(timed([&] { renderer->render(scene, size.width, size.height, pixels); }));

@@ -13,7 +13,6 @@
 #include "bench/machine.h"
 #include "example_files.h"
 #include "input_kind.h"
-#include "interrupt.h"
 #include "simulation_options.h"
 
 namespace fascia {
@@ -80,7 +79,6 @@ ScalingResult measure(const std::string& file, const BuildOptions& build, int th
   const int frames = std::max(1, static_cast<int>(std::lround(options.seconds / kFrame_s)));
   double wall_s = 0;
   for (int f = 0; f < kWarmFrames + frames; ++f) {
-    if (interruptSignal() != 0) throw Interrupted{};
     if (f == kWarmFrames) result.stats = {}, wall_s = 0;
     const auto begin = std::chrono::steady_clock::now();
     advance(*character, character->source(motion), kFrame_s, state, result.stats);

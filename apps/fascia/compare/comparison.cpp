@@ -12,7 +12,6 @@
 #include "compare/shooting.h"
 #include "compare/subject.h"
 #include "film_parts.h"
-#include "interrupt.h"
 #include "outputs.h"
 #include "progress.h"
 
@@ -26,7 +25,7 @@ constexpr double kWipeReach = 0.38;       // of the picture, to either side of i
 
 void checkOptions(const CompareOptions& options) {
   checkFolders({options.output});
-  checkOverwriting({options.input}, {options.output}, {});
+  checkOverwriting({options.output}, {});
   if (options.film() && options.time_s >= 0)
     throw Error("--time is of a picture (.png); a film shows the whole motion");
   if (!options.film() && options.turntable)
@@ -89,9 +88,7 @@ class Comparison {
 
   std::vector<Moment> lookAtAll() {
     ProgressBar progress(console_, "measuring");
-    return surveyor_->look(frames_, [&](double share) {
-      if (!progress.update(share)) throw Interrupted{};
-    });
+    return surveyor_->look(frames_, [&](double share) { progress.update(share); });
   }
 
   void survey() {
@@ -192,7 +189,7 @@ class Comparison {
                              .gone = path_[frames_[i]]};
       toImage(shooting.draw(shot, moments_[i], title(frames_[i])), image);
       video.add(image);
-      if (!progress.update((static_cast<double>(i) + 1) / count)) throw Interrupted{};
+      progress.update((static_cast<double>(i) + 1) / count);
     }
     video.finish();
     if (!video.hint().empty()) console_.hint(video.hint());

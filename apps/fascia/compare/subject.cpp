@@ -58,17 +58,13 @@ Subject cachedSubject(const std::string& input) {
   return {Character(cache.def), std::move(cache.recording)};
 }
 
-}  // namespace
-
-Subject prepareSubject(const std::string& input, SimulationOptions& options,
-                       std::optional<double> only_s, const Console& console) {
+Subject subjectOf(const std::string& input, SimulationOptions& options,
+                  std::optional<double> only_s, const Console& console) {
   if (endingOf(input) == ".fcache") {
     if (!options.motion.empty()) throw Error("--motion: a cache holds one motion already");
     return cachedSubject(input);
   }
-  CharacterFile file;
-  withInput(input, {.command = "compare", .character = true, .recording = true, .model = true},
-            [&] { file = readSubject(input, console); });
+  CharacterFile file = readSubject(input, console);
   requireRig(file.def, input);
   Character character = prepareCharacter(std::move(file), options, console);
   const int motion = chooseMotion(character, options.motion);
@@ -85,6 +81,16 @@ Subject prepareSubject(const std::string& input, SimulationOptions& options,
   if (only_s) keepOnly(*only_s, rate_hz, record);
   Recording recording = simulate(character, motion, record, console);
   return {std::move(character), std::move(recording)};
+}
+
+}  // namespace
+
+Subject prepareSubject(const std::string& input, SimulationOptions& options,
+                       std::optional<double> only_s, const Console& console) {
+  std::optional<Subject> subject;
+  withInput(input, {.command = "compare", .character = true, .recording = true, .model = true},
+            [&] { subject = subjectOf(input, options, only_s, console); });
+  return std::move(*subject);
 }
 
 }  // namespace fascia

@@ -4,9 +4,23 @@
 
 namespace fascia {
 
-std::shared_ptr<const Pixels> toPixels(const Texture& texture) {
+namespace {
+
+Image decoded(const Texture& texture, const std::string& owner) {
+  try {
+    return decodeImage(texture.bytes, texture.name);
+  } catch (const Error& error) {
+    if (owner.empty()) throw;
+    const Location where{owner, 0, "/skin/texture"};
+    throw Error(Issue{where, "the texture " + error.issues().front().text(), {}});
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Pixels> toPixels(const Texture& texture, const std::string& owner) {
   if (texture.empty()) return nullptr;
-  Image image = decodeImage(texture.bytes);
+  Image image = decoded(texture, owner);
   return std::make_shared<const Pixels>(Pixels{image.width, image.height, std::move(image.rgba)});
 }
 
@@ -17,7 +31,8 @@ std::shared_ptr<const RigSurface> rigSurface(const Character& character,
   std::vector<std::shared_ptr<const Pixels>> textures;
   for (const RigMaterial& material : model->materials) {
     try {
-      textures.push_back(toPixels({std::string(material.texture.begin(), material.texture.end())}));
+      textures.push_back(
+          toPixels({std::string(material.texture.begin(), material.texture.end()), {}}));
     } catch (const Error& error) {
       textures.push_back(nullptr);
       if (notes)

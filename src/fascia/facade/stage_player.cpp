@@ -7,10 +7,11 @@ StagePlayer::StagePlayer(const Stage& stage, const StageRecording& recording,
     : recording_(recording) {
   for (const StageRecording::Frame& frame : recording.frames) times_s_.push_back(frame.time_s);
   for (std::size_t i = 0; i < recording.characters.size(); ++i) {
-    const Character& character = *stage.def().characters[i].character;
+    const SceneCharacterDef& actor = stage.def().characters[i];
+    const Character& character = *actor.character;
     players_.push_back(std::make_unique<Player>(character, recording.characters[i]));
     moment_.actors.push_back({&players_.back()->state(), &players_.back()->skin(),
-                              toPixels(textures[i]), rigSurface(character, notes)});
+                              toPixels(textures[i], actor.file), rigSurface(character, notes)});
   }
 }
 

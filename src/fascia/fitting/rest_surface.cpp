@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
+#include <fascia/base/random.h>
 
 namespace fascia {
 namespace {
@@ -70,6 +72,7 @@ RestSurface::RestSurface(const RiggedModel& model, const FitOptions& options)
   }
   const double spacing_m = std::sqrt(area_m2_ / kWantedSamples);
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) addSamples(model, t, spacing_m);
+  thinOutCrowd();
   dropHidden();
   parallelFor(samples_.size(), [&](std::size_t i) { measureThickness(samples_[i]); });
 }
@@ -111,6 +114,45 @@ void RestSurface::addSamples(const RiggedModel& model, std::uint32_t triangle, d
       sampleTriangle_.push_back(triangle);
     }
   }
+}
+
+// Every sample sends a dozen rays, and each costs what it may cross. A line through the figure
+// meets as many of the triangles' boxes as their area is of the whole box' (Cauchy): one to four in
+// figures. Where triangles lie in one another, so do the hierarchy's boxes, and fewer samples must
+// do: the square, as rays cost more and tell less.
+void RestSurface::thinOutCrowd() {
+  constexpr double kUsualMeetings = 20;  // hair in many layers, still
+  constexpr std::size_t kLeastSamples = 200;
+  const auto area = [](const Box& box) {
+    const Vec3 size = box.size();
+    return size.x() * size.y() + size.y() * size.z() + size.z() * size.x();
+  };
+  Box whole;
+  double sum_m2 = 0;
+  for (const auto& t : mesh_.triangles) {
+    Box box;
+    for (const std::uint32_t corner : t) box.add(mesh_.positions[corner].cast<double>());
+    sum_m2 += area(box);
+    whole.add(box);
+  }
+  const double meetings = sum_m2 / std::max(area(whole), 1e-300);
+  const double wanted = std::pow(meetings / kUsualMeetings, 2);
+  const double most = static_cast<double>(samples_.size()) / static_cast<double>(kLeastSamples);
+  const auto stride = static_cast<std::size_t>(std::ceil(std::clamp(wanted, 0.0, most)));
+  if (stride < 2) return;
+  // Any one out of each row of neighbours: always the first would fall in step with rings of a
+  // mesh.
+  Random random(1);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < samples_.size(); i += stride, ++kept) {
+    const std::size_t row = std::min(stride, samples_.size() - i);
+    const std::size_t chosen = i + random.next() % row;
+    samples_[kept] = samples_[chosen];
+    samples_[kept].area_m2 *= static_cast<double>(row);
+    sampleTriangle_[kept] = sampleTriangle_[chosen];
+  }
+  samples_.resize(kept);
+  sampleTriangle_.resize(kept);
 }
 
 // A triangle stays visible if one of its samples is; those without a sample stay, too.
@@ -156,18 +198,21 @@ void RestSurface::keepTriangles(const std::vector<char>& sampled, const std::vec
 
 bool RestSurface::inside(const Vec3& p, std::uint32_t except) const {
   constexpr int kMostHits = 64;
-  int votes = 0;
+  std::vector<TriangleHierarchy::Hit> hits;
+  int votes = 0, against = 0;
   for (const Vec3& direction : voters()) {
-    double t = 0;
-    int surrounding = 0;
-    for (int i = 0; i < kMostHits; ++i) {
-      const auto hit = hierarchy_.firstHit(p + t * direction, direction);
-      if (!hit) break;
-      t += hit->t + 1e-7 * size_m_;
-      if (component_[hit->triangle] == except) continue;
-      surrounding += faceNormals_[hit->triangle].dot(direction) > 0 ? 1 : -1;
+    if (votes >= 3 || against >= 3) break;  // decided
+    hierarchy_.allHits(p, direction, 1e150, hits);
+    double from = 0;  // sheets that lie on one another count once
+    int surrounding = 0, passed = 0;
+    for (const TriangleHierarchy::Hit& hit : hits) {
+      if (hit.t < from) continue;
+      if (passed++ == kMostHits) break;
+      from = hit.t + 1e-7 * size_m_;
+      if (component_[hit.triangle] == except) continue;
+      surrounding += faceNormals_[hit.triangle].dot(direction) > 0 ? 1 : -1;
     }
-    votes += surrounding > 0;
+    ++(surrounding > 0 ? votes : against);
   }
   return votes >= 3;
 }
@@ -184,16 +229,45 @@ RestSurface::Nearest RestSurface::nearest(const Vec3& p) const {
   return {found->position, side < 0 ? -found->distance_m : found->distance_m};
 }
 
+namespace {
+
+// The first crossing of a ray behind its point at `from`: `hits` are all of them from its origin,
+// and `next` the first that may be it. Computed from that point, not from the origin: near ones
+// differ by less than rounding.
+std::optional<TriangleHierarchy::Hit> nextHit(const TriangleHierarchy& hierarchy,
+                                              std::span<const TriangleHierarchy::Hit> hits,
+                                              std::size_t& next, const Vec3& origin,
+                                              const Vec3& direction, double from, double slack) {
+  while (next < hits.size() && hits[next].t < from - slack) ++next;
+  const Vec3 start = origin + from * direction;
+  std::optional<TriangleHierarchy::Hit> best;
+  for (std::size_t i = next; i < hits.size(); ++i) {
+    if (best && hits[i].t > from + best->t + slack) break;
+    const auto hit = hierarchy.hitOf(hits[i].triangle, start, direction);
+    if (!hit) continue;
+    if (best && (hit->t > best->t || (hit->t == best->t && hit->triangle > best->triangle)))
+      continue;
+    best = hit;
+  }
+  return best;
+}
+
+}  // namespace
+
 // Pieces that the ray enters on its way must be left again before the body is; if one is open, the
 // last way out counts.
 double RestSurface::thickness(const Vec3& p, const Vec3& inward, double limit_m) const {
   FASCIA_ASSERT(isUnit(inward, 1e-2) && limit_m >= 0, "one looks inward along a direction");
   constexpr int kMostHits = 12;
+  const double slack_m = 1e-9 * size_m_;
+  std::vector<TriangleHierarchy::Hit> hits;
+  hierarchy_.allHits(p, inward, limit_m + slack_m, hits);
+  std::size_t next = 0;
   double t = 1e-5 * size_m_, last = 0;
   int surrounding = 1;
   for (int i = 0; i < kMostHits; ++i) {
-    const auto hit = hierarchy_.firstHit(p + t * inward, inward, limit_m - t);
-    if (!hit) break;
+    const auto hit = nextHit(hierarchy_, hits, next, p, inward, t, slack_m);
+    if (!hit || hit->t > limit_m - t) break;
     t += hit->t;
     const bool leaves = faceNormals_[hit->triangle].dot(inward) > 0;
     surrounding += leaves ? -1 : 1;

@@ -60,6 +60,7 @@ class RestSurface {
 
  private:
   void addSamples(const RiggedModel& model, std::uint32_t triangle, double spacing_m);
+  void thinOutCrowd();
   void measureThickness(SurfaceSample& sample) const;
   void dropHidden();
   void keepTriangles(const std::vector<char>& sampled, const std::vector<char>& seen);

@@ -110,4 +110,26 @@ std::optional<TriangleHierarchy::Hit> TriangleHierarchy::firstHit(const Vec3& or
   return best;
 }
 
+std::optional<TriangleHierarchy::Hit> TriangleHierarchy::hitOf(std::uint32_t triangle,
+                                                               const Vec3& origin,
+                                                               const Vec3& direction) const {
+  const auto hit = rayTriangle(corners(triangle), origin, direction);
+  if (!hit || hit->x() < 0) return std::nullopt;
+  return Hit{triangle, hit->x(), Vec3(1 - hit->y() - hit->z(), hit->y(), hit->z())};
+}
+
+void TriangleHierarchy::allHits(const Vec3& origin, const Vec3& direction, double tMax,
+                                std::vector<Hit>& hits) const {
+  FASCIA_ASSERT(direction.squaredNorm() > 0 && tMax >= 0, "a ray goes somewhere");
+  hits.clear();
+  tree_.visit([&](const Box& box) { return rayMeets(box, origin, direction, tMax); },
+              [&](std::uint32_t triangle) {
+                const auto hit = hitOf(triangle, origin, direction);
+                if (hit && hit->t <= tMax) hits.push_back(*hit);
+              });
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+    return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
+  });
+}
+
 }  // namespace fascia

@@ -30,6 +30,13 @@ class TriangleHierarchy {
   };
   // The first crossing with t in [0, tMax], from either side of a triangle.
   std::optional<Hit> firstHit(const Vec3& origin, const Vec3& direction, double tMax = 1e150) const;
+  // Every crossing with t in [0, tMax], in the order of t, then of triangles; replaces `hits`. For
+  // rays that are followed through many surfaces: it costs no more than firstHit() where nothing is
+  // near.
+  void allHits(const Vec3& origin, const Vec3& direction, double tMax,
+               std::vector<Hit>& hits) const;
+  // Of one triangle only.
+  std::optional<Hit> hitOf(std::uint32_t triangle, const Vec3& origin, const Vec3& direction) const;
 
  private:
   std::array<Vec3, 3> corners(std::uint32_t triangle) const;

@@ -39,7 +39,8 @@ class Guesser {
         found_(target.size()),
         isFixed_(target.size(), false) {}
 
-  void give(const JointPair& pair, std::unordered_set<std::string>& silent);
+  void give(const JointPair& pair, std::unordered_set<std::string>& silent,
+            std::vector<Issue>& issues);
   void guess(const std::unordered_set<std::string>& silent);
   void dropContradictions(std::vector<std::string>* notes);
   JointMap map() const;
@@ -70,24 +71,29 @@ std::unordered_map<std::string, int> byBareName(std::span<const RigJoint> joints
   return names;
 }
 
-int findJoint(std::span<const RigJoint> joints, const std::string& name, const char* where) {
-  NearestName nearest(name);
-  for (std::size_t j = 0; j < joints.size(); ++j) {
+// -1 if there is none of that name, which becomes an issue.
+int findJoint(std::span<const RigJoint> joints, const std::string& name, const char* where,
+              int line, std::vector<Issue>& issues) {
+  constexpr std::size_t kEnough = 100;  // a person reads no more; a hostile file has millions
+  for (std::size_t j = 0; j < joints.size(); ++j)
     if (joints[j].name == name) return static_cast<int>(j);
-    nearest.offer(joints[j].name);
-  }
-  Issue issue;
-  issue.message = std::string("the joint map names ") + quotedName(name) + ", which " + where +
-                  " does not have";
-  issue.hint = nearest.hint();
-  throw Error(std::move(issue));
+  if (issues.size() >= kEnough) return -1;
+  NearestName nearest(name);
+  for (const RigJoint& joint : joints) nearest.offer(joint.name);
+  issues.push_back({{{}, line, {}},
+                    std::string("the joint map names ") + quotedName(name) + ", which " + where +
+                        " does not have",
+                    nearest.hint()});
+  return -1;
 }
 
-void Guesser::give(const JointPair& pair, std::unordered_set<std::string>& silent) {
-  const int source = findJoint(source_, pair.source, "the motion");
+void Guesser::give(const JointPair& pair, std::unordered_set<std::string>& silent,
+                   std::vector<Issue>& issues) {
+  const int source = findJoint(source_, pair.source, "the motion", pair.line, issues);
   silent.insert(pair.source);
   if (pair.target.empty()) return;
-  const int target = findJoint(target_, pair.target, "the rig");
+  const int target = findJoint(target_, pair.target, "the rig", pair.line, issues);
+  if (source < 0 || target < 0) return;
   found_[at(target)] = {source, "given"};
   isFixed_[at(target)] = true;
 }
@@ -240,7 +246,9 @@ JointMap guessJointMap(std::span<const RigJoint> source, std::span<const RigJoin
                        std::span<const JointPair> given, std::vector<std::string>* notes) {
   Guesser guesser(source, target);
   std::unordered_set<std::string> silent;
-  for (const JointPair& pair : given) guesser.give(pair, silent);
+  std::vector<Issue> issues;
+  for (const JointPair& pair : given) guesser.give(pair, silent, issues);
+  if (!issues.empty()) throw Error(std::move(issues));
   guesser.guess(silent);
   guesser.dropContradictions(notes);
   return guesser.map();
@@ -269,7 +277,7 @@ JointMap parseJointMap(std::string_view text, const std::string& file) {
       issue.message = std::string("found ") + quotedName(content) + ", expected 'source = target'";
       throw Error(std::move(issue));
     }
-    map.push_back({source, trim(std::string_view(content).substr(sign + 1)), "given"});
+    map.push_back({source, trim(std::string_view(content).substr(sign + 1)), "given", line});
   }
   return map;
 }

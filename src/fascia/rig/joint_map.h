@@ -14,12 +14,13 @@ namespace fascia {
 struct JointPair {
   std::string source, target;  // names; an empty target (given by a person): drives nothing
   std::string why;             // for a person: "same name", "left upper arm", "given"
+  int line = 0;                // of the file that gave it; 0: none
 };
 using JointMap = std::vector<JointPair>;  // targets in the rig's order
 
 // Pairs by name and structure. `given` pairs win over guesses. Pairs that contradict the hierarchy
-// are left out; `notes` says which, and what has no counterpart. Throws Error for a given name that
-// does not exist.
+// are left out; `notes` says which, and what has no counterpart. Throws Error with
+// every given name that does not exist, and its line.
 JointMap guessJointMap(std::span<const RigJoint> source, std::span<const RigJoint> target,
                        std::span<const JointPair> given = {},
                        std::vector<std::string>* notes = nullptr);

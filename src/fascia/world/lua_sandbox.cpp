@@ -141,6 +141,10 @@ void LuaSandbox::onCount(lua_State* L, lua_Debug*) {
 
 void LuaSandbox::charge(lua_State* L, std::int64_t instructions) {
   instructions_ += instructions;
+  total_ += instructions;
+  if (total_ > limits_.instructions)
+    fail(L, "ran for more than " + std::to_string(limits_.instructions) + " instructions in all",
+         "wait for longer between looks at what happens");
   if (instructions_ > limits_.instructions_per_update)
     fail(L,
          "ran on for more than " + std::to_string(limits_.instructions_per_update) +

@@ -55,6 +55,7 @@ class LuaSandbox {
   std::size_t used_bytes_ = 0;     // at present
   std::size_t traffic_bytes_ = 0;  // allocated since beginUpdate()
   std::int64_t instructions_ = 0;  // since beginUpdate()
+  std::int64_t total_ = 0;         // of all updates
   std::chrono::steady_clock::time_point deadline_;
   Refusal refusal_ = Refusal::none;
   Issue failure_;  // of the last fail()

@@ -13,6 +13,7 @@ namespace fascia {
 struct ScriptLimits {
   std::size_t memory_bytes = 16u << 20;            // in all
   std::int64_t instructions_per_update = 1000000;  // some ten milliseconds
+  std::int64_t instructions = 2'000'000'000;       // of the whole run: some twenty seconds
   // Of one update. The instructions should stop a script first; this is for the case that single
   // ones take long, as it makes the outcome depend on the machine.
   double wall_clock_s = 5;

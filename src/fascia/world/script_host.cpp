@@ -27,7 +27,9 @@ ScriptHost::ScriptHost(std::string text, std::string file, std::uint64_t seed,
 
 // The script itself is the first task.
 void ScriptHost::load(const std::string& text) {
-  const int status = luaL_loadbufferx(main(), text.data(), text.size(), kScriptChunk, "t");
+  std::string_view plain = text;  // without U+FEFF, which some editors put first
+  if (plain.starts_with("\xef\xbb\xbf")) plain.remove_prefix(3);
+  const int status = luaL_loadbufferx(main(), plain.data(), plain.size(), kScriptChunk, "t");
   if (status != LUA_OK) raise(issueOf(main(), status));
   const auto start = [](lua_State* L) {
     of(L).startTask(L, 1);

@@ -8,7 +8,6 @@
 #include <fascia/rig/dual_quaternion.h>
 #include <fascia/rig/linear_blend.h>
 
-#include "interrupt.h"
 #include "progress.h"
 #include "simulation_options.h"
 
@@ -51,7 +50,6 @@ class BlendContender : public Contender {
     }
     watch.stop();
     performance.frame_s = watch.total_s() / static_cast<double>(count);
-    if (interruptSignal() != 0) throw Interrupted{};
     return performance;
   }
 
@@ -104,7 +102,7 @@ class FasciaContender : public Contender {
       for (const std::uint32_t v : vertexOf_)
         performance.frames.back().push_back(surface.positions[v]);
       const auto done = static_cast<double>(f + 1);
-      if (!progress.update(done / static_cast<double>(stage.motions.size()))) throw Interrupted{};
+      progress.update(done / static_cast<double>(stage.motions.size()));
     }
     performance.frame_s = watch.total_s() / static_cast<double>(stage.motions.size() - 1);
     return performance;

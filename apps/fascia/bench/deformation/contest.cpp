@@ -55,7 +55,8 @@ class Contest {
   }
 
   Json run() {
-    console_.say(fmt::format("\n{}: {} points, {} triangles, {} joints; {} crossings at rest",
+    console_.say("");
+    console_.say(fmt::format("{}: {} points, {} triangles, {} joints; {} crossings at rest",
                              entrant_.name, model_->points_m.size(), model_->triangles.size(),
                              model_->joints.size(), judge_.crossingsAtRest()));
     if (!entrant_.character)

@@ -36,7 +36,8 @@ std::string goalCell(double goal) {
 }  // namespace
 
 void sayStageHeading(const StageResult& stage, const std::string& more, const Console& console) {
-  console.say(fmt::format("\n{}{}", stage.name, more));
+  console.say("");
+  console.say(stage.name + more);
   console.say(fmt::format("{}   {}", kHeadings,
                           stage.isPose ? "volume lost (%)" : "jitter   time per frame"));
   console.say(fmt::format("{}   {}", kTableHead,
@@ -89,7 +90,8 @@ Json toJson(const StageResult& stage, std::size_t points) {
 
 void saySummary(const std::vector<SummaryRow>& rows, const Console& console) {
   // A cell is 8 wide, the last for its mark.
-  console.say(fmt::format("\n{:17}{:^16}{:^16}{:^16}{:^16}{:^16}{:>7} {:>7} {:>7}", "against",
+  console.say("");
+  console.say(fmt::format("{:17}{:^16}{:^16}{:^16}{:^16}{:^16}{:>7} {:>7} {:>7}", "against",
                           "crossings", "turned", "lumpiness", "volume", "99 % stretch", "jitter",
                           "error", "µs per"));
   std::string columns = fmt::format("{:17}", "linear blend");

@@ -12,7 +12,6 @@
 #include "bench/peers/bullet_sheet.h"
 #include "bench/peers/fascia_sheet.h"
 #include "console.h"
-#include "interrupt.h"
 #include "simulation_options.h"
 
 namespace fascia {
@@ -51,7 +50,6 @@ struct FasciaRun {
 };
 
 FasciaRun runFascia(const SheetScene& scene, const FasciaSettings& settings, int frames) {
-  if (interruptSignal() != 0) throw Interrupted{};
   FasciaRun run{settings, 0, {}};
   const std::unique_ptr<SheetSolver> sheet = makeFasciaSheet(scene, settings, run.stepsPerFrame);
   run.result = measureSheet(scene, *sheet, frames);

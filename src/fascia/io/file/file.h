@@ -11,13 +11,16 @@ namespace fascia {
 // The whole file. Throws Error: missing, a folder or device, unreadable, larger than maxBytes.
 std::string readFile(const std::string& path, std::size_t maxBytes);
 
+// Without the mark that some editors put before UTF-8 (U+FEFF).
+std::string_view withoutByteOrderMark(std::string_view text);
+
 std::string folderOf(const std::string& path);  // "a/b.json" -> "a"; empty = the current one
 
-// A file that appears whole or not at all: written under a temporary name beside its place, renamed
-// by commit(), removed if that never comes.
+// A file that appears whole or not at all (see TemporaryFile): commit() puts it in its place. Onto
+// devices, pipes and what standard output already goes to, it is written as it comes.
 class WholeFile {
  public:
-  explicit WholeFile(std::string path);  // throws Error if the folder cannot be written to
+  explicit WholeFile(std::string path);  // throws Error if it cannot be written there
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
@@ -29,7 +32,8 @@ class WholeFile {
  private:
   [[noreturn]] void fail(const char* what);
 
-  std::string path_, temporary_;
+  std::string path_;
+  std::unique_ptr<class TemporaryFile> temporary_;  // none of what is written as it comes
   std::FILE* file_ = nullptr;
 };
 

@@ -56,7 +56,7 @@ std::span<const std::uint8_t> GltfDocument::viewBytes(int bufferView) const {
 
 // The bytes that "byteOffset" and "byteLength" at a place tell.
 std::span<const std::uint8_t> GltfDocument::part(int buffer, const GltfPlace& place) const {
-  const std::vector<std::uint8_t>& bytes = buffers_[static_cast<std::size_t>(buffer)];
+  const std::vector<std::uint8_t>& bytes = *buffers_[static_cast<std::size_t>(buffer)];
   const std::size_t first = place["byteOffset"].countOr(0), length = place["byteLength"].count();
   if (first > bytes.size() || length > bytes.size() - first) {
     place.fail("reaches byte " + std::to_string(first + length) + " of a buffer of " +
@@ -74,8 +74,19 @@ std::size_t GltfDocument::elementCount(int accessor) const {
   return GltfAccessor::of(*this, accessor).count;
 }
 
+// An accessor may be named any number of times, and is decoded each time.
+void GltfDocument::charge(std::size_t numbers, int accessor) const {
+  constexpr std::size_t kMostNumbers = 1'000'000'000;
+  decoded_ += numbers;
+  if (numbers <= kMostNumbers && decoded_ <= kMostNumbers) return;
+  root()["accessors"]
+      .at(static_cast<std::size_t>(accessor))
+      .fail("asks for more than " + std::to_string(kMostNumbers) + " numbers in all");
+}
+
 std::vector<float> GltfDocument::floats(int accessor, int components) const {
   const GltfAccessor source = checked(*this, accessor, components);
+  charge(source.count * static_cast<std::size_t>(components), accessor);
   std::vector<float> out(source.count * static_cast<std::size_t>(components), 0.f);
   decode(source, [&](std::size_t i, double value) { out[i] = static_cast<float>(value); });
   return out;
@@ -83,6 +94,7 @@ std::vector<float> GltfDocument::floats(int accessor, int components) const {
 
 std::vector<std::uint32_t> GltfDocument::integers(int accessor, int components) const {
   GltfAccessor source = checked(*this, accessor, components);
+  charge(source.count * static_cast<std::size_t>(components), accessor);
   source.normalized = false;
   std::vector<std::uint32_t> out(source.count * static_cast<std::size_t>(components), 0);
   decode(source, [&](std::size_t i, double value) {  // some exporters write joints as floats
@@ -102,7 +114,7 @@ std::vector<std::uint8_t> GltfDocument::image(int image) const {
   }
   if (!place["uri"]) return {};
   try {
-    return dataOf(place["uri"].text(), place["uri"]);
+    return *dataOf(place["uri"].text(), place["uri"]);
   } catch (const Error&) {
     return {};  // a character without its picture is still a character
   }

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <fascia/io/file/inputs.h>
 #include <fascia/io/gltf/gltf_place.h>
 #include <fascia/io/json/json.h>
 
@@ -77,7 +80,11 @@ class GltfDocument {
   void unpackMesh(std::size_t mesh, std::size_t primitive);
   void forgetExtension(std::string_view name);
   void embedImages();
-  std::vector<std::uint8_t> dataOf(const std::string& uri, const GltfPlace& place) const;
+  using Bytes = std::shared_ptr<std::vector<std::uint8_t>>;
+  Bytes dataOf(const std::string& uri, const GltfPlace& place) const;
+  Bytes fileBeside(const std::string& name) const;
+  void notePictures() const;
+  void charge(std::size_t numbers, int accessor) const;
   std::span<const std::uint8_t> part(int buffer, const GltfPlace& place) const;
   int addBuffer(std::vector<std::uint8_t> bytes);
   int addView(const void* data, std::size_t bytes, Target target, std::size_t stride = 0);
@@ -89,8 +96,12 @@ class GltfDocument {
 
   std::string path_;
   Json json_;
-  std::vector<std::vector<std::uint8_t>> buffers_;
-  int ownBuffer_ = -1;  // where added data go
+  // Copies of a document share them until one is added to; so do buffers of one file.
+  std::vector<Bytes> buffers_;
+  mutable std::map<FileId, Bytes> files_;  // beside it, as far as they have been read
+  mutable std::size_t file_bytes_ = 0;     // of all of them
+  mutable std::size_t decoded_ = 0;        // numbers out of accessors
+  int ownBuffer_ = -1;                     // where added data go
 };
 
 }  // namespace fascia

@@ -51,13 +51,15 @@ Json& GltfDocument::item(const char* list, int index) {
 }
 
 int GltfDocument::addBuffer(std::vector<std::uint8_t> bytes) {
-  buffers_.push_back(std::move(bytes));
-  return add("buffers", Json::Object{{"byteLength", buffers_.back().size()}});
+  buffers_.push_back(std::make_shared<std::vector<std::uint8_t>>(std::move(bytes)));
+  return add("buffers", Json::Object{{"byteLength", buffers_.back()->size()}});
 }
 
 int GltfDocument::addView(const void* data, std::size_t bytes, Target target, std::size_t stride) {
   if (ownBuffer_ < 0) ownBuffer_ = addBuffer({});
-  std::vector<std::uint8_t>& own = buffers_[static_cast<std::size_t>(ownBuffer_)];
+  Bytes& shared = buffers_[static_cast<std::size_t>(ownBuffer_)];
+  if (shared.use_count() > 1) shared = std::make_shared<std::vector<std::uint8_t>>(*shared);
+  std::vector<std::uint8_t>& own = *shared;
   own.resize((own.size() + 3) / 4 * 4);
   Json view =
       Json::Object{{"buffer", ownBuffer_}, {"byteOffset", own.size()}, {"byteLength", bytes}};

@@ -91,6 +91,7 @@ GltfDocument GltfDocument::parse(std::string_view bytes, const std::string& path
   if (!issues.empty()) throw Error(std::move(issues));
   checkVersion(document.root());
   checkRequiredExtensions(document.root());
+  document.notePictures();
   document.loadBuffers(chunks.binary);
   document.unpackCompressedViews();
   document.unpackCompressedMeshes();
@@ -102,12 +103,10 @@ void GltfDocument::loadBuffers(std::string_view binaryChunk) {
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const GltfPlace buffer = buffers.at(i), uri = buffer["uri"];
     const std::size_t length = buffer["byteLength"].count();
-    std::vector<std::uint8_t>& bytes = buffers_.emplace_back();
-    if (uri) {
-      bytes = dataOf(uri.text(), uri);
-    } else if (i == 0) {
-      bytes.assign(binaryChunk.begin(), binaryChunk.end());
-    }
+    Bytes shared = uri ? dataOf(uri.text(), uri) : std::make_shared<std::vector<std::uint8_t>>();
+    if (!uri && i == 0) shared->assign(binaryChunk.begin(), binaryChunk.end());
+    const std::vector<std::uint8_t>& bytes = *shared;
+    buffers_.push_back(std::move(shared));
     // A buffer without any bytes only stands in for compressed data that are elsewhere.
     if (!bytes.empty() && bytes.size() < length) {
       buffer.fail(
@@ -117,11 +116,10 @@ void GltfDocument::loadBuffers(std::string_view binaryChunk) {
   }
 }
 
-std::vector<std::uint8_t> GltfDocument::dataOf(const std::string& uri,
-                                               const GltfPlace& place) const {
+GltfDocument::Bytes GltfDocument::dataOf(const std::string& uri, const GltfPlace& place) const {
   if (uri.starts_with("data:")) {
-    std::vector<std::uint8_t> bytes;
-    if (!decodeDataUri(uri, bytes)) place.fail("is no data URI in base64");
+    auto bytes = std::make_shared<std::vector<std::uint8_t>>();
+    if (!decodeDataUri(uri, *bytes)) place.fail("is no data URI in base64");
     return bytes;
   }
   const std::string name = decodePercents(uri);
@@ -131,12 +129,32 @@ std::vector<std::uint8_t> GltfDocument::dataOf(const std::string& uri,
                "put the file beside this one");
   }
   try {
-    const std::string file = insideFolder(folderOf(path_), name, "a part of the glTF", "");
-    const std::string bytes = readFile(file, kMostGltfBytes);
-    return {bytes.begin(), bytes.end()};
+    return fileBeside(insideFolder(folderOf(path_), name, "a part of the glTF", ""));
   } catch (const Error& error) {
     place.fail(error.issues().front().message, error.issues().front().hint);
   }
+}
+
+// Pictures are read when somebody asks for them; that they are part of the file is known before.
+void GltfDocument::notePictures() const {
+  const GltfPlace images = root()["images"];
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const GltfPlace uri = images.at(i)["uri"];
+    if (!uri || !uri.json()->is(Json::Kind::text) || uri.text().starts_with("data:")) continue;
+    const std::string folder = folderOf(path_);
+    noteInput((folder.empty() ? "" : folder + "/") + decodePercents(uri.text()));
+  }
+}
+
+// However often and under however many names it is asked for, a file is read once.
+GltfDocument::Bytes GltfDocument::fileBeside(const std::string& name) const {
+  const std::optional<FileId> id = fileIdOf(name);
+  if (id && files_.contains(*id)) return files_[*id];
+  const std::string text = readFile(name, kMostGltfBytes - file_bytes_);
+  auto bytes = std::make_shared<std::vector<std::uint8_t>>(text.begin(), text.end());
+  file_bytes_ += bytes->size();
+  if (id) files_[*id] = bytes;
+  return bytes;
 }
 
 }  // namespace fascia

@@ -50,9 +50,10 @@ const char* mimeTypeOf(const std::vector<std::uint8_t>& bytes) {
 // Copies the parts of buffers that views use, each once, into one buffer; views may overlap.
 class Packer {
  public:
-  using Buffers = std::vector<std::vector<std::uint8_t>>;
+  using Buffers = std::vector<std::shared_ptr<std::vector<std::uint8_t>>>;
 
   std::string pack(const GltfPlace& views, const Buffers& buffers, Json& json) {
+    findFirsts(buffers);
     for (std::size_t i = 0; i < views.size(); ++i) parts_[startOf(views.at(i))] = 0;
     std::map<Start, std::size_t> ends;
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -74,8 +75,15 @@ class Packer {
  private:
   using Start = std::pair<std::size_t, std::size_t>;  // buffer, first byte (a multiple of four)
 
-  static Start startOf(const GltfPlace& view) {
-    return {view["buffer"].count(), view["byteOffset"].countOr(0) / 4 * 4};
+  Start startOf(const GltfPlace& view) const {
+    return {firsts_[view["buffer"].count()], view["byteOffset"].countOr(0) / 4 * 4};
+  }
+
+  // Of buffers that are one file, the first stands for all.
+  void findFirsts(const Buffers& buffers) {
+    std::map<const void*, std::size_t> known;
+    for (std::size_t b = 0; b < buffers.size(); ++b)
+      firsts_.push_back(known.try_emplace(buffers[b].get(), b).first->second);
   }
 
   // Fills parts_: where each start went. Overlapping parts keep their distance.
@@ -83,7 +91,7 @@ class Packer {
     Start open{std::numeric_limits<std::size_t>::max(), 0};
     std::size_t copied = 0;  // how far the buffer of `open` has been copied
     for (const auto& [start, end] : ends) {
-      const std::vector<std::uint8_t>& from = buffers[start.first];
+      const std::vector<std::uint8_t>& from = *buffers[start.first];
       if (start.first != open.first || start.second > copied) {
         bytes_.resize((bytes_.size() + 3) / 4 * 4);
         open = start;
@@ -97,6 +105,7 @@ class Packer {
     }
   }
 
+  std::vector<std::size_t> firsts_;  // per buffer
   std::map<Start, std::size_t> parts_;
   std::string bytes_;
   std::size_t base_ = 0;  // where `open` went

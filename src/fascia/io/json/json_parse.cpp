@@ -174,6 +174,8 @@ Json parseJson(std::string_view text, const JsonLimits& limits, std::vector<Issu
                                     " bytes, expected at most " + std::to_string(limits.bytes);
     return {};
   }
+  // U+FEFF, which some editors put first: nothing that counts.
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   Position position;
   Builder builder(limits, position, issues);
   const CountingIterator begin(text.data(), &position);

@@ -5,6 +5,7 @@
 
 #include <fascia/base/error.h>
 #include <fascia/base/suggest.h>
+#include <fascia/io/file/file.h>
 #include <fascia/io/motion/bvh.h>
 
 namespace fascia {
@@ -244,7 +245,7 @@ class Parser {
 }  // namespace
 
 BvhMotion parseBvh(std::string_view text, const std::string& file) {
-  return Parser(text, file).parse();
+  return Parser(withoutByteOrderMark(text), file).parse();
 }
 
 }  // namespace fascia

@@ -27,6 +27,7 @@ JointMap fromJson(std::string_view text, const std::string& file) {
       pair.source = member.key;
       if (member.value.is(Json::Kind::text)) pair.target = member.value.text();
       pair.why = "given";
+      pair.line = member.value.line();
     }
   }
   for (Issue& issue : issues) issue.where.file = file;
@@ -37,6 +38,7 @@ JointMap fromJson(std::string_view text, const std::string& file) {
 }  // namespace
 
 JointMap jointMapOf(std::string_view text, const std::string& file) {
+  text = withoutByteOrderMark(text);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool isJson = first != std::string_view::npos && text[first] == '{';
   return isJson ? fromJson(text, file) : parseJointMap(text, file);

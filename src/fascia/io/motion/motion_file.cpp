@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fascia/base/error.h>
 #include <fascia/io/file/file.h>
 #include <fascia/io/motion/bvh.h>
 #include <fascia/io/motion/joint_map_file.h>
@@ -17,6 +18,19 @@ bool endsWithAnyCase(std::string_view text, std::string_view ending) {
       [](char wanted, char found) { return wanted == (found | 0x20) || wanted == found; });
 }
 
+// Tells faults that name no file from the one that they are in.
+template <class Work>
+auto inFile(const std::string& path, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    std::vector<Issue> issues = error.issues();
+    for (Issue& issue : issues)
+      if (issue.where.file.empty()) issue.where.file = path;
+    throw Error(std::move(issues));
+  }
+}
+
 }  // namespace
 
 bool isMotionFile(std::string_view motion) {
@@ -29,14 +43,17 @@ MotionFile readMotionFile(const std::string& path, const RiggedModel& rig,
   if (!joint_map.empty()) given = readJointMap(joint_map);
   const BvhMotion motion = readBvh(path);
   MotionFile file;
+  file.path = path;
   file.notes = motion.notes;
   file.figure = figureOf(motion, guessBvhUnit_m(motion, &file.unit));
-  file.map = guessJointMap(file.figure.joints, rig.joints, given, &file.notes);
+  file.map = inFile(
+      joint_map, [&] { return guessJointMap(file.figure.joints, rig.joints, given, &file.notes); });
   return file;
 }
 
 SampledMotion ontoRig(MotionFile& file, const RiggedModel& rig) {
-  SampledMotion motion = retarget(file.figure, rig, file.map, {}, &file.notes);
+  SampledMotion motion =
+      inFile(file.path, [&] { return retarget(file.figure, rig, file.map, {}, &file.notes); });
   motion.name = file.figure.motion.name;
   const auto taken = [&](const SampledMotion& m) { return m.name == motion.name; };
   while (std::any_of(rig.motions.begin(), rig.motions.end(), taken)) motion.name += " (mapped)";

@@ -15,6 +15,7 @@ bool isMotionFile(std::string_view motion);
 
 // A motion capture file, and how its joints drive a rig's.
 struct MotionFile {
+  std::string path;
   MotionFigure figure;  // metres
   std::string unit;     // what its lengths were taken for
   JointMap map;

@@ -24,28 +24,61 @@ void checkSize(const std::string& file, std::size_t width, std::size_t height) {
   }
 }
 
-Image decodePng(std::string_view bytes, const std::string& file) {
-  png_image reader;
-  std::memset(&reader, 0, sizeof reader);
-  reader.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_memory(&reader, bytes.data(), bytes.size())) {
-    throw fileError(file, std::string("not a good PNG: ") + reader.message);
+// libpng's reader of one picture.
+class PngReader {
+ public:
+  PngReader(std::string_view bytes, const std::string& file) : file_(file) {
+    std::memset(&reader_, 0, sizeof reader_);
+    reader_.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_memory(&reader_, bytes.data(), bytes.size())) fail();
+    try {
+      checkSize(file_, reader_.width, reader_.height);
+    } catch (...) {
+      png_image_free(&reader_);
+      throw;
+    }
   }
+  ~PngReader() { png_image_free(&reader_); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+
+  Image image() {
+    Image image;
+    image.width = static_cast<int>(reader_.width);
+    image.height = static_cast<int>(reader_.height);
+    reader_.format = PNG_FORMAT_RGBA;
+    image.rgba.resize(PNG_IMAGE_SIZE(reader_));
+    if (!png_image_finish_read(&reader_, nullptr, image.rgba.data(), 0, nullptr)) fail();
+    return image;
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    throw fileError(file_, std::string("not a good PNG: ") + reader_.message);
+  }
+
+  const std::string& file_;
+  png_image reader_;
+};
+
+// The size of a JPEG that may be decoded.
+Image jpegFrame(std::string_view bytes, const std::string& file) {
   Image image;
-  try {
-    checkSize(file, reader.width, reader.height);
-    image.width = static_cast<int>(reader.width);
-    image.height = static_cast<int>(reader.height);
-    reader.format = PNG_FORMAT_RGBA;
-    image.rgba.resize(PNG_IMAGE_SIZE(reader));
-  } catch (...) {
-    png_image_free(&reader);
-    throw;
-  }
-  if (!png_image_finish_read(&reader, nullptr, image.rgba.data(), 0, nullptr)) {
-    throw fileError(file, std::string("not a good PNG: ") + reader.message);
-  }
+  std::string message;
+  if (!jpegSize(bytes, image.width, image.height, message)) throw fileError(file, message);
+  checkSize(file, static_cast<std::size_t>(image.width), static_cast<std::size_t>(image.height));
   return image;
+}
+
+Image decodeWholeJpeg(std::string_view bytes, const std::string& file) {
+  Image image = jpegFrame(bytes, file);
+  std::string message;
+  if (!decodeJpeg(bytes, image, message)) throw fileError(file, message);
+  return image;
+}
+
+[[noreturn]] void refuseFormat(const std::string& file) {
+  throw fileError(file, "neither a PNG nor a JPEG");
 }
 
 // Drawn pictures are: a quarter less to pack.
@@ -140,18 +173,27 @@ void writePng(const Image& image, const std::string& path) {
 Image decodeImage(std::string_view bytes, const std::string& file) {
   switch (imageFormat(bytes)) {
     case ImageFormat::png:
-      return decodePng(bytes, file);
+      return PngReader(bytes, file).image();
     case ImageFormat::jpeg:
-      break;
+      return decodeWholeJpeg(bytes, file);
     case ImageFormat::unknown:
-      throw fileError(file, "neither a PNG nor a JPEG");
+      break;
   }
-  Image image;
-  std::string message;
-  if (!jpegSize(bytes, image.width, image.height, message)) throw fileError(file, message);
-  checkSize(file, static_cast<std::size_t>(image.width), static_cast<std::size_t>(image.height));
-  if (!decodeJpeg(bytes, image, message)) throw fileError(file, message);
-  return image;
+  refuseFormat(file);
+}
+
+void checkPicture(std::string_view bytes, const std::string& file) {
+  switch (imageFormat(bytes)) {
+    case ImageFormat::png:
+      PngReader(bytes, file);
+      return;
+    case ImageFormat::jpeg:
+      jpegFrame(bytes, file);
+      return;
+    case ImageFormat::unknown:
+      break;
+  }
+  refuseFormat(file);
 }
 
 Image readImage(const std::string& path) {

@@ -27,6 +27,8 @@ bool isPicture(const std::vector<std::uint8_t>& bytes);  // begins like a PNG or
 
 // PNG or JPEG, told apart by content. Throws Error; `file` is what messages call it.
 Image decodeImage(std::string_view bytes, const std::string& file = {});
+// What a picture's first bytes tell: throws Error if it is none, or larger than may be decoded.
+void checkPicture(std::string_view bytes, const std::string& file = {});
 Image readImage(const std::string& path);
 
 }  // namespace fascia

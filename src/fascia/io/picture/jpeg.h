@@ -7,8 +7,9 @@
 
 namespace fascia {
 
-// JPEG through stb_image, kept in one translation unit. False with a message for bad data.
+// JPEG through libjpeg-turbo, kept in one translation unit. False with a message for bad data.
 bool jpegSize(std::string_view bytes, int& width, int& height, std::string& message);
+// `image` has the size that jpegSize() told.
 bool decodeJpeg(std::string_view bytes, Image& image, std::string& message);
 
 }  // namespace fascia

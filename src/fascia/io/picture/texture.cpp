@@ -22,11 +22,11 @@ Texture loadTexture(const CharacterDef& def) {
   Texture texture;
   try {
     texture.bytes = readFile(place, kMaxBytes);
+    checkPicture(texture.bytes, name);
   } catch (const Error& error) {
     throw errorAt(kTexturePointer, "the texture " + error.issues().front().text());
   }
-  if (imageFormat(texture.bytes) == ImageFormat::unknown)
-    throw errorAt(kTexturePointer, "the texture is neither a PNG nor a JPEG: " + name);
+  texture.name = name;
   return texture;
 }
 

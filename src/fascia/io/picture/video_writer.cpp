@@ -1,12 +1,22 @@
 #include <fascia/io/picture/video_writer.h>
 
 #include <cctype>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
 #include <fascia/base/error.h>
 #include <fascia/io/file/child_process.h>
+#include <fascia/io/file/file.h>
+#include <fascia/io/file/temporary_file.h>
+#include <fascia/io/file/unfinished.h>
 
 namespace fascia {
 namespace fs = std::filesystem;
@@ -38,16 +48,11 @@ class VideoWriter::Sink {
 
 class VideoWriter::Encoder final : public Sink {
  public:
-  Encoder(ChildProcess process, std::string path, std::string temporary)
-      : process_(std::move(process)), path_(std::move(path)), temporary_(std::move(temporary)) {}
-  ~Encoder() override {
-    process_.reset();  // must have stopped writing before the file goes
-    std::error_code ignored;
-    if (!done_) fs::remove(temporary_, ignored);
-  }
+  Encoder(ChildProcess process, std::unique_ptr<TemporaryFile> file, std::string path)
+      : file_(std::move(file)), process_(std::move(process)), path_(std::move(path)) {}
 
   static std::vector<std::string> arguments(int width, int height, const VideoOptions& options,
-                                            const std::string& output, bool gif) {
+                                            bool gif) {
     std::vector<std::string> all{"-nostdin", "-loglevel", "error", "-y",
                                  // in
                                  "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
@@ -55,7 +60,7 @@ class VideoWriter::Encoder final : public Sink {
                                  decimal(options.frame_rate_hz), "-i", "pipe:0"};
     const std::vector<std::string> out = gif ? gifArguments() : mp4Arguments(options.crf);
     all.insert(all.end(), out.begin(), out.end());
-    all.push_back("file:" + output);
+    all.push_back(std::string("file:") + ChildProcess::kOutputPath);
     return all;
   }
 
@@ -75,25 +80,22 @@ class VideoWriter::Encoder final : public Sink {
   }
 
   void add(const Image& frame) override {
-    if (process_->write(frame.rgba.data(), frame.rgba.size())) return;
-    process_->finish();
-    throw fileError(path_, "the video cannot be encoded: " + process_->complaints());
+    if (process_.write(frame.rgba.data(), frame.rgba.size())) return;
+    process_.finish();
+    throw fileError(path_, "the video cannot be encoded: " + process_.complaints());
   }
   void finish() override {
-    if (!process_->finish()) {
-      throw fileError(path_, "the video cannot be encoded: " + process_->complaints());
+    if (!process_.finish()) {
+      throw fileError(path_, "the video cannot be encoded: " + process_.complaints());
     }
-    std::error_code error;
-    fs::rename(temporary_, path_, error);
-    if (error) throw fileError(path_, "cannot be put in its place: " + error.message());
-    done_ = true;
+    file_->put();
   }
   bool encodes() const override { return true; }
 
  private:
-  std::optional<ChildProcess> process_;
-  std::string path_, temporary_;
-  bool done_ = false;
+  std::unique_ptr<TemporaryFile> file_;
+  ChildProcess process_;  // ended before its file goes
+  std::string path_;
 };
 
 // clip.mp4 -> clip/00000.png …; built under another name and renamed like a file.
@@ -103,40 +105,61 @@ class VideoWriter::PngSequence final : public Sink {
     const fs::path file(path);
     folder_ = (file.parent_path() / file.stem()).string();
     if (!file.has_extension()) folder_ += "-frames";
-    temporary_ = folder_ + ".tmp";
     std::error_code error;
-    if (fs::exists(folder_, error))
+    if (fs::exists(fs::symlink_status(folder_, error)))
       throw fileError(folder_, "is in the way of the picture sequence");
-    fs::remove_all(temporary_, error);
-    if (!fs::create_directories(temporary_, error)) {
-      throw fileError(temporary_, "cannot be made: " + error.message());
-    }
+    makeTemporary();
     hint = "the program " + options.encoder + " was not found, so the frames are PNG files in " +
            folder_ + "; to join them: ffmpeg -framerate " + decimal(options.frame_rate_hz) +
            " -i " + folder_ + "/%05d.png " + (isGif(path) ? "" : "-pix_fmt yuv420p ") + path;
   }
   ~PngSequence() override {
-    std::error_code ignored;
-    if (!done_) fs::remove_all(temporary_, ignored);
+    if (temporary_.empty()) return;
+    const auto lock = lockUnfinished();
+    removeOwnFolder(temporary_);
+    unlistTemporary(temporary_);
   }
 
   void add(const Image& frame) override {
     char name[24];
     std::snprintf(name, sizeof name, "/%05d.png", count_++);
-    writePng(frame, temporary_ + name);
+    try {
+      writePng(frame, temporary_ + name);
+    } catch (const Error& error) {  // by the name that it would have had
+      throw fileError(folder_ + name, error.issues().front().message);
+    }
   }
+  // Never over anything: even an empty folder is somebody's.
   void finish() override {
-    std::error_code error;
-    fs::rename(temporary_, folder_, error);
-    if (error) throw fileError(folder_, "cannot be put in its place: " + error.message());
-    done_ = true;
+    const auto lock = lockUnfinished();
+    if (renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, folder_.c_str(), RENAME_NOREPLACE) != 0)
+      throw fileError(folder_, std::string("cannot be put in its place: ") + std::strerror(errno));
+    unlistTemporary(temporary_);
+    temporary_.clear();
   }
   bool encodes() const override { return false; }
 
  private:
-  std::string folder_, temporary_;
+  void makeTemporary() {
+    const std::string parent = folderOf(folder_);
+    sweepTemporaries(parent);
+    const auto lock = lockUnfinished();
+    const std::string name = temporaryName(parent);
+    if (mkdir(name.c_str(), 0777) != 0)
+      throw fileError(folder_, std::string("cannot be made: ") + std::strerror(errno));
+    temporary_ = name;
+    listTemporary(temporary_);
+    held_.reset(opendir(temporary_.c_str()));
+    if (held_) flock(dirfd(held_.get()), LOCK_EX | LOCK_NB);
+  }
+
+  struct CloseFolder {
+    void operator()(DIR* folder) const { closedir(folder); }
+  };
+
+  std::string folder_, temporary_;          // temporary_: empty once it is in its place
+  std::unique_ptr<DIR, CloseFolder> held_;  // its lock tells others that somebody works on it
   int count_ = 0;
-  bool done_ = false;
 };
 
 VideoWriter::VideoWriter(const std::string& path, int width, int height,
@@ -149,13 +172,16 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height,
   std::error_code error;
   const fs::path folder = fs::absolute(path, error).parent_path();
   if (!fs::is_directory(folder, error)) throw fileError(path, "the folder is missing");
-  const std::string temporary = path + ".tmp";
-  if (std::optional<ChildProcess> process = ChildProcess::start(
-          options.encoder, Encoder::arguments(width, height, options, temporary, isGif(path)))) {
-    sink_ = std::make_unique<Encoder>(std::move(*process), path, temporary);
-  } else {
-    sink_ = std::make_unique<PngSequence>(path, options);
+  if (!findProgram(options.encoder).empty()) {
+    auto file = std::make_unique<TemporaryFile>(path);
+    if (std::optional<ChildProcess> process = ChildProcess::start(
+            options.encoder, Encoder::arguments(width, height, options, isGif(path)),
+            file->descriptor())) {
+      sink_ = std::make_unique<Encoder>(std::move(*process), std::move(file), path);
+      return;
+    }
   }
+  sink_ = std::make_unique<PngSequence>(path, options);
 }
 
 VideoWriter::~VideoWriter() = default;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <set>
 
@@ -13,6 +12,7 @@
 #include <fascia/base/error.h>
 #include <fascia/base/suggest.h>
 #include <fascia/io/file/file.h>
+#include <fascia/io/file/inside_folder.h>
 #include <fascia/io/picture/image.h>
 #include <fascia/io/rig_import/assimp/assimp_motion.h>
 #include <fascia/io/rig_model/rig_limits.h>
@@ -161,9 +161,9 @@ std::vector<std::uint8_t> AssimpAssembler::pictureOf(const std::string& name) co
     // Paths in such files are of the machine that made them: only the name is used.
     const std::size_t slash = name.find_last_of("/\\");
     const std::string bare = slash == std::string::npos ? name : name.substr(slash + 1);
-    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
     try {
-      const std::string text = readFile((folder / bare).string(), kMaxPictureFileBytes);
+      const std::string place = insideFolder(folderOf(path_), bare, "the picture", "");
+      const std::string text = readFile(place, kMaxPictureFileBytes);
       bytes.assign(text.begin(), text.end());
     } catch (const Error&) {
       bytes.clear();  // a character without its picture is still a character

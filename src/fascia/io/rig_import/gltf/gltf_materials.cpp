@@ -61,6 +61,7 @@ class PictureReader {
       if (!isPicture(*picture)) picture->clear();
     }
     if (picture->empty() || picture->size() > kMostPictureBytes - taken_) {
+      std::vector<std::uint8_t>().swap(*picture);  // what nobody gets is not kept
       model_.notes.push_back("the picture of material " + jsonText(material.name) +
                              " is missing, too large, or neither PNG nor JPEG: left out");
       return;

@@ -7,6 +7,7 @@
 
 #include <fascia/base/error.h>
 #include <fascia/base/suggest.h>
+#include <fascia/io/file/file.h>
 
 namespace fascia {
 namespace {
@@ -124,7 +125,7 @@ const ObjMesh::Group* ObjMesh::find(std::string_view name) const {
 }
 
 ObjMesh parseObj(std::string_view text, const std::string& file) {
-  return ObjParser(file).parse(text);
+  return ObjParser(file).parse(withoutByteOrderMark(text));
 }
 
 Vec3 middleOf(const ObjMesh& mesh, const ObjMesh::Group& group) {

@@ -92,10 +92,16 @@ struct NamedBone {
   std::string parent;  // empty: the root
 };
 
+// Without a name, a bone would hang on itself: no parent is what the root has.
+const std::string& nameOf(const Json::Member& member, const Reader& reader) {
+  if (member.key.empty()) reader.fail(member.value, "found a bone without a name");
+  return member.key;
+}
+
 NamedBone boneOfMpfb(const Json::Member& member, const ObjMesh& mesh, const Reader& reader) {
   const Json& json = member.value;
   NamedBone out;
-  out.bone.name = member.key;
+  out.bone.name = nameOf(member, reader);
   out.parent = reader.member(json, "parent", Json::Kind::text).text();
   out.bone.head = endOf(reader.member(json, "head", Json::Kind::object), mesh, reader);
   out.bone.tail = endOf(reader.member(json, "tail", Json::Kind::object), mesh, reader);
@@ -112,7 +118,7 @@ NamedBone boneOfMakeHuman(const Json::Member& member, const Json& joints, const 
     return meanOf(reader.member(joints, name, Json::Kind::list), mesh, reader);
   };
   NamedBone out;
-  out.bone.name = member.key;
+  out.bone.name = nameOf(member, reader);
   const Json* parent = json.find("parent");
   if (parent && parent->is(Json::Kind::text)) out.parent = parent->text();
   out.bone.head = place("head");
@@ -174,8 +180,9 @@ std::string weightsPath(const std::string& rigPath, const Json& rig, const Reade
     name =
         file && file->is(Json::Kind::text) ? file->text() : path.stem().string() + "_weights.mhw";
     // From a stranger's file: nothing outside of its folder.
-    if (name != std::filesystem::path(name).filename().string()) {
-      reader.fail(*file, "expected the name of a file beside it");
+    const bool plain = name == std::filesystem::path(name).filename().string();
+    if (!plain || name.empty() || name == "." || name == "..") {
+      reader.fail(file ? *file : rig, "expected the name of a file beside it");
     }
   } else {
     name = std::string("weights.") + (name.starts_with("rig.") ? name.substr(4) : name);

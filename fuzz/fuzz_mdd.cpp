@@ -1,0 +1,14 @@
+// Any bytes either are an MDD file or throw Error.
+#include <fascia/base/error.h>
+#include <fascia/io/cache/mdd.h>
+
+#include "scratch.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes = fascia::textOf(data, size);
+  try {
+    fascia::parseMdd(bytes, "fuzz");
+  } catch (const fascia::Error&) {
+  }
+  return 0;
+}
