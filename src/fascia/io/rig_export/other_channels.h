@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <fascia/io/gltf/gltf_keys.h>
+#include <fascia/io/rig_export/rig_source.h>
+
+namespace fascia {
+
+// Whether a channel turns or moves one of the rig's joints: what a bake replaces.
+bool movesJoint(const RigSource& source, const Json& channel);
+
+// Makes an animation anew of what it does beside moving joints (morph targets, props, sizes, what
+// extensions animate), cut or repeated to a span of its clock. Returns how many channels could not
+// be cut, and are left out.
+std::size_t cutOtherChannels(RigSource& source, int animation, const GltfSpan& span);
+
+// What a person is told of channels that were left out.
+std::vector<std::string> notesOfChannels(std::size_t leftOut);
+
+}  // namespace fascia
