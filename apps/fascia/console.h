@@ -29,6 +29,7 @@ class Console {
   // Every issue a line on stderr; with --json the answer, unless one was given.
   void fail(const Error& error) const;
 
+  bool isVerbose() const { return verbose_; }
   // Whether to tell how far the work is: someone wants text.
   bool showsProgress() const;
 
