@@ -229,7 +229,7 @@ void addBake(CLI::App& program, Console& console) {
       ->required()
       ->type_name("FILE")
       ->allow_extra_args(false)
-      ->check(endsIn({".glb", ".vrm", ".pc2", ".mdd", ".fcache"}));
+      ->check(endsIn({".glb", ".pc2", ".mdd", ".fcache", ".vrm"}));
   command.add_option("--stats", options->stats, "Write how the simulation went to this JSON file")
       ->type_name("FILE");
   command

@@ -377,7 +377,7 @@ RigBakeReport writeRigAsBones(std::span<const RigClip> clips, const Decompositio
   RigBakeReport report;
   report.plain = found.plain;
   report.added = found.helpers.size();
-  report.notes = notesOfChannels(writer.leftOut());
+  report.notes = notesOfMotions(clips, writer.leftOut());
   report.notes.insert(report.notes.end(), springs.begin(), springs.end());
   report.files = {path};
   measurePlayed(path, source.scale, played, 0, report);

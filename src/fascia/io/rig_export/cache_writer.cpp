@@ -9,6 +9,7 @@
 #include <fascia/io/cache/mdd.h>
 #include <fascia/io/cache/pc2.h>
 #include <fascia/io/gltf/gltf_accessor.h>
+#include <fascia/io/rig_export/other_channels.h>
 #include <fascia/io/rig_export/rig_source.h>
 
 namespace fascia {
@@ -274,7 +275,8 @@ RigBakeReport writeRigAsCache(const RigClip& clip, const std::string& path) {
     entries += static_cast<double>(cache.frames.size() * meshes[m].vertices.size());
   }
   report.error.rms_mm = 1e3 * std::sqrt(sum_m2 / entries);
-  report.notes = {leftOutOf(source)};
+  report.notes = notesOfMotions(source.clips, 0);
+  report.notes.push_back(leftOutOf(source));
   StillWriter(source).write(meshes);
   source.document.writeGlb(path);
   return report;

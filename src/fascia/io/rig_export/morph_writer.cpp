@@ -274,7 +274,7 @@ RigBakeReport writeRigAsMorphs(std::span<const RigClip> clips, const MorphOption
   const std::vector<std::string> springs = settleSprings(source, file);
   source.document.writeGlb(path);
   RigBakeReport report;
-  report.notes = notesOfChannels(writer.leftOut());
+  report.notes = notesOfMotions(clips, writer.leftOut());
   report.notes.insert(report.notes.end(), springs.begin(), springs.end());
   report.added = basis.targets.size();
   report.plain = basis.targets.empty();

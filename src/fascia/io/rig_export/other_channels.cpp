@@ -76,10 +76,17 @@ std::size_t cutOtherChannels(RigSource& source, int animation, const GltfSpan& s
   return left;
 }
 
-std::vector<std::string> notesOfChannels(std::size_t leftOut) {
-  if (leftOut == 0) return {};
-  return {std::to_string(leftOut) +
-          " animation channels could not be cut to the baked length: left out"};
+std::vector<std::string> notesOfMotions(std::span<const RigClip> clips, std::size_t leftOut) {
+  std::vector<std::string> notes;
+  for (const RigClip& clip : clips) {
+    const std::string named = " in " + jsonText(clip.motion);
+    for (const std::string& note : clip.model.notes)
+      if (note.find(named) != std::string::npos) notes.push_back(note);
+  }
+  if (leftOut > 0)
+    notes.push_back(std::to_string(leftOut) +
+                    " animation channels could not be cut to the baked length: left out");
+  return notes;
 }
 
 }  // namespace fascia

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ bool movesJoint(const RigSource& source, const Json& channel);
 // be cut, and are left out.
 std::size_t cutOtherChannels(RigSource& source, int animation, const GltfSpan& span);
 
-// What a person is told of channels that were left out.
-std::vector<std::string> notesOfChannels(std::size_t leftOut);
+// What a person is told of a bake: channels that were left out, and what the importer noted of the
+// baked motions (joints whose sizes are not simulated).
+std::vector<std::string> notesOfMotions(std::span<const RigClip> clips, std::size_t leftOut);
 
 }  // namespace fascia
