@@ -34,6 +34,7 @@ TEST_P(Examples, HaveTheSameBitsOnAnyNumberOfThreads) {
 
 TEST_P(Examples, HaveTheSameBitsOnAnyNumberOfThreadsWithEveryIntegrator) {
   for (const IntegratorInfo& integrator : integrators()) {
+    if (integrator.name == "euler") continue;  // refuses such skins
     const Character character = load(8, 12, std::string(integrator.name));
     std::uint64_t hash[2];
     for (int n = 0; n < 2; ++n) {

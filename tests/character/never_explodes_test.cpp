@@ -88,8 +88,9 @@ TEST(NeverExplodes, AndComesToRestAgainAfterAJump) {
     const Character character(def);
     const Worst worst = test::simulate(character, 0, frame, static_cast<int>(3 / frame));
     expectSound(worst, describe(frame, 150, 4));
-    EXPECT_GT(worst.stretch, 2);
-    EXPECT_LT(worst.lastStretch, 1.5) << frame;
+    EXPECT_GT(worst.stretch, def.skin->material.max_stretch);  // pulled as far as it goes, and
+    EXPECT_LT(worst.stretch, 1.2 * def.skin->material.max_stretch);  // no farther
+    EXPECT_LT(worst.lastStretch, 1.1) << frame;
   }
 }
 
@@ -113,7 +114,10 @@ TEST(NeverExplodes, WithAnyIntegratorOfTheLibrary) {
       def.skin->columns = def.skin->rows = 8;
       def.motions = {test::teleport(2 * frame, 2, kPi / 2, 2)};
       def.simulation.integrator = integrator.name;
-      def.simulation.min_step_s = 1e-4;
+      if (integrator.name == "euler") {  // refuses: without damping it swings up at any step
+        EXPECT_THROW(Character{def}, Error);
+        continue;
+      }
       expectSound(test::simulate(Character(def), 0, frame, 6),
                   std::string(integrator.name) + " " + describe(frame, 150, 4));
     }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <fascia/deformable/contact/contact_potential.h>
+#include <fascia/contact/slide_energy.h>
+#include <fascia/math/log_barrier.h>
 
 #include "contact_scenes.h"
 

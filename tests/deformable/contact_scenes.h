@@ -123,7 +123,7 @@ struct BoxScene {
 };
 
 // One solid that moves without turning.
-class MovingSolid final : public Field {
+class MovingSolid : public Field {
  public:
   explicit MovingSolid(const SolidDef& def) : solid_(makeSolid(def)) {}
   Vec3 center_m = Vec3::Zero(), velocity_m_per_s = Vec3::Zero();

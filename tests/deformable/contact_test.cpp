@@ -3,6 +3,7 @@
 #include <fascia/base/error.h>
 
 #include "contact_scenes.h"
+#include "support/steep_field.h"
 
 // A body against the ground and against solids that do not feel it.
 
@@ -128,6 +129,24 @@ TEST(Contact, FastBodiesDoNotPassThroughThinSolids) {
     }
     EXPECT_GT(nearest, -1e-3) << speed;
     EXPECT_LT(nearest, 0.01) << speed;
+  }
+}
+
+// Blends of many elements overestimate distances; their Lipschitz bound says by how much.
+TEST(Contact, FastBodiesDoNotPassThroughAFieldThatOverestimates) {
+  for (const double speed : {5.0, 30.0, 90.0}) {
+    test::Steep<test::MovingSolid> plate(SolidDef{"superellipsoid", {1, 0.003, 1, 0.2, 0.2}, {}});
+    BoxScene scene({{}}, {});
+    scene.contacts->addObstacle(plate);
+    scene.place(0, Vec3(0.05, 0.7, 0.1), 0.3);
+    scene.setVelocity(0, Vec3(0, -speed, 0));
+    BodyStepper stepper(*scene.system);
+    double nearest = HUGE_VAL;
+    for (int i = 0; i < 30; ++i) {
+      stepper.step(kFrame_s, scene.state);
+      nearest = std::min(nearest, scene.lowest_m());
+    }
+    EXPECT_GT(nearest, -1e-3) << speed;
   }
 }
 

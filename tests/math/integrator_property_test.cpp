@@ -5,6 +5,7 @@
 
 #include <fascia/base/error.h>
 #include <fascia/math/finite_difference.h>
+#include <fascia/math/ode/stability.h>
 
 #include "ode_systems.h"
 
@@ -34,6 +35,29 @@ TEST(Integrators, ListTheNamesWhenAskedForAnUnknownOne) {
     for (const IntegratorInfo& info : integrators())
       EXPECT_THAT(error.what(), HasSubstr(std::string(info.name)));
   }
+}
+
+// The limits of the textbooks (Hairer & Wanner 1996, §IV.2).
+TEST(LongestStableStep, IsThatOfTheStabilityFunction) {
+  const double omega = 800, gamma = 12;
+  const auto of = [&](const char* name, double damping) {
+    return longestStableStep_s(*make(name), omega, damping);
+  };
+  EXPECT_EQ(of("euler", 0), 0);
+  EXPECT_NEAR(of("euler", gamma), gamma / (omega * omega), 1e-3 * gamma / (omega * omega));
+  const double midpoint = std::cbrt(4 * gamma / std::pow(omega, 4));
+  EXPECT_NEAR(of("rk2", gamma), midpoint, 0.03 * midpoint);
+  EXPECT_NEAR(of("rk4", 0), std::sqrt(8.0) / omega, 1e-3 / omega);
+  for (const char* name : {"verlet", "symplectic-euler"})
+    EXPECT_NEAR(of(name, 0), 2 / omega, 1e-3 / omega) << name;
+  for (const char* name : {"implicit-euler", "rosenbrock4"}) EXPECT_EQ(of(name, 0), 1) << name;
+}
+
+TEST(LongestStableStep, LeavesSettingsAsTheyWere) {
+  const auto method = make("verlet");
+  const double before = method->settings().velocity_tolerance;
+  longestStableStep_s(*method, 100, 1);
+  EXPECT_EQ(method->settings().velocity_tolerance, before);
 }
 
 TEST(Leapfrog, IsReversibleInTime) {

@@ -2,6 +2,7 @@
 
 #include <fascia/skin/contact/flesh_contact.h>
 
+#include "support/steep_field.h"
 #include "test_fields.h"
 
 namespace fascia {
@@ -198,6 +199,35 @@ TEST(FleshContact, TakesThePlaneOfTheNearerOfTwoSolids) {
   });
   EXPECT_GT(sides[0], 100);
   EXPECT_GT(sides[1], 100);
+}
+
+// A cloud that comes from far away, in steps of `step_m`.
+template <class Solids>
+void expectMemoryChangesNothing(const Solids& flesh, double step_m) {
+  Cloud cloud(0.2);
+  for (float& x : cloud.position.x) x += 3.f;
+  float farthest_m = 0;
+  for (int step = 0; step < 60; ++step) {
+    Cloud afresh = cloud;
+    afresh.contact = Cloud(0.2).contact;
+    const FleshContact::Result result = cloud.project(flesh);
+    farthest_m = std::max(farthest_m, result.maxCorrection_m);
+    ASSERT_EQ(afresh.project(flesh).maxCorrection_m, result.maxCorrection_m) << step;
+    test::forEachPoint(cloud.layout, [&](int, int, std::size_t k) {
+      ASSERT_EQ(test::at(cloud.position, k), test::at(afresh.position, k)) << step;
+    });
+    for (float& x : cloud.position.x) x -= static_cast<float>(step_m);
+  }
+  EXPECT_GT(farthest_m, 5e-3f);
+}
+
+TEST(FleshContact, RemembersOnlyWhatChangesNothing) {
+  RigidSolids chain;
+  for (int i = 0; i < 6; ++i) chain.addSphere(Vec3(0.5 * i, 0, 0), 0.1);
+  for (const double step_m : {0.01, 0.05}) {
+    expectMemoryChangesNothing(chain, step_m);
+    expectMemoryChangesNothing(test::Steep<RigidSolids>(chain), step_m);
+  }
 }
 
 TEST(FleshContact, LeavesFixedPointsAlone) {

@@ -8,6 +8,7 @@
 #include <fascia/skin/grid/attach.h>
 #include <fascia/skin/grid/nearest_solids.h>
 
+#include "support/steep_field.h"
 #include "test_fields.h"
 
 namespace fascia {
@@ -56,8 +57,7 @@ class Drift {
   VectorArray points_;
 };
 
-TEST(NearestSolids, SaysOnTheWayWhatAskingAllOfThemAnewSays) {
-  const test::RigidSolids field = chainOfSolids(12);
+void expectToKnowAllOnTheWay(const DistanceField& field) {
   NearestSolids followed(field, kReach_m);
   Drift drift(20);
   for (int step = 0; step < 400; ++step) {
@@ -71,6 +71,11 @@ TEST(NearestSolids, SaysOnTheWayWhatAskingAllOfThemAnewSays) {
     }
     drift.advance(0.008);
   }
+}
+
+TEST(NearestSolids, SaysOnTheWayWhatAskingAllOfThemAnewSays) {
+  expectToKnowAllOnTheWay(chainOfSolids(12));
+  expectToKnowAllOnTheWay(test::Steep<test::RigidSolids>(chainOfSolids(12)));
 }
 
 TEST(NearestSolids, AsksFewOfManySolids) {

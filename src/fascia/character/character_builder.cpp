@@ -1,11 +1,13 @@
 #include <fascia/character/character_builder.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <utility>
 
 #include <fascia/character/idle_settings.h>
 #include <fascia/flesh/bind.h>
+#include <fascia/skin/ode_skin.h>
 
 namespace fascia {
 namespace {
@@ -22,6 +24,12 @@ SkinSettings settingsOf(const SimulationDef& s, double interval_s) {
   out.correction_tolerance_m = s.correction_tolerance_m;
   if (interval_s > 0) out.interval_s = interval_s;
   return out;
+}
+
+std::string inMicroseconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g µs", 1e6 * seconds);
+  return text;
 }
 
 bool isSoft(const FleshSolidDef& solid) {
@@ -203,6 +211,24 @@ void CharacterBuilder::makeSkin() {
       *def().skin, settingsOf(def().simulation, parts_.interval_s),
       SkinBase{*parts_.skeleton, *parts_.flesh, posedSkeleton, posedFlesh, rig}, "/skin",
       diagnostics_, before_ ? before_->skin.get() : nullptr);
+  checkIntegrator();
+}
+
+// What cannot keep this skin calm with steps of the length that is allowed is refused: its error
+// control would let it swing up.
+void CharacterBuilder::checkIntegrator() {
+  const SimulationDef& simulation = def().simulation;
+  const std::string& name = simulation.integrator;
+  if (!diagnostics_.ok() || !parts_.skin->isSimulated() || name == "auto" || name == "leapfrog")
+    return;
+  const double longest_s = longestOdeStep_s(*parts_.skin);
+  if (longest_s >= simulation.min_step_s) return;
+  diagnostics_.error(
+      "/simulation/integrator",
+      "found " + name + ", which keeps this skin from swinging up only with steps of " +
+          inMicroseconds(longest_s) + ", expected one that does with min_step_s (" +
+          inMicroseconds(simulation.min_step_s) + ")",
+      "choose auto, or an implicit one; or make the skin softer, heavier or its drag larger");
 }
 
 }  // namespace fascia

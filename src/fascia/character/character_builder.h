@@ -28,6 +28,7 @@ class CharacterBuilder {
   void bindMotions();
   void bindRigMotions();
   void makeSkin();
+  void checkIntegrator();
 
   const CharacterDef& def() const { return *parts_.def; }
 

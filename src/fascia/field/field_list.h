@@ -35,6 +35,9 @@ class FieldList final : public Field {
                 Vectors normal) const override {
     with(solid, [&](const Field& f, SolidId s) { f.evaluate(s, points, distance_m, normal); });
   }
+  double lipschitz(SolidId solid) const override {
+    return with(solid, [](const Field& f, SolidId s) { return f.lipschitz(s); });
+  }
   Transform frame(SolidId solid) const override {
     return with(solid, [](const Field& f, SolidId s) { return f.frame(s); });
   }

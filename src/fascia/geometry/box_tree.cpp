@@ -17,12 +17,17 @@ Vec3 finiteCenter(const Box& box) {
 }  // namespace
 
 void BoxTree::build(std::span<const Box> items) {
+  std::vector<std::uint32_t> scratch;
+  build(items, scratch);
+}
+
+void BoxTree::build(std::span<const Box> items, std::vector<std::uint32_t>& scratch) {
   nodes_.clear();
   if (items.empty()) return;
   nodes_.reserve(2 * items.size() - 1);
-  std::vector<std::uint32_t> order(items.size());
-  std::iota(order.begin(), order.end(), 0u);
-  buildNode(items, order);
+  scratch.resize(items.size());
+  std::iota(scratch.begin(), scratch.end(), 0u);
+  buildNode(items, scratch);
   refit(items);
 }
 

@@ -17,6 +17,11 @@ inline bool meets(const Box& a, const Box& b) {
          !a.empty() && !b.empty();
 }
 
+// Larger by so much on every side.
+inline Box inflated(const Box& box, double by_m) {
+  return {box.low.array() - by_m, box.high.array() + by_m};
+}
+
 // Squared distance from a point to a box; 0 inside.
 inline double squaredDistance(const Box& box, const Vec3& p) {
   return (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).squaredNorm();
@@ -27,6 +32,8 @@ inline double squaredDistance(const Box& box, const Vec3& p) {
 class BoxTree {
  public:
   void build(std::span<const Box> items);
+  // The same for trees that are built again and again: allocates only for more items than before.
+  void build(std::span<const Box> items, std::vector<std::uint32_t>& scratch);
   void refit(std::span<const Box> items);  // as many as built with; allocates nothing
   std::size_t itemCount() const { return (nodes_.size() + 1) / 2; }
 

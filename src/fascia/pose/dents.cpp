@@ -1,12 +1,23 @@
 #include <fascia/pose/dents.h>
 
 #include <fascia/base/assert.h>
+#include <fascia/geometry/box_tree.h>
 
 namespace fascia {
 namespace {
 
 constexpr std::uint8_t kDentRings = 6;
 constexpr int kDentPasses = 8;
+
+// In world space, with room for what gives way.
+Box boxOf(std::span<const Vector4f> position, const Vec3& origin_m) {
+  constexpr double kRoom = 0.1;  // of its size
+  Eigen::AlignedBox3f box;
+  for (const Vector4f& p : position) box.extend(Eigen::Vector3f(p.head<3>()));
+  if (box.isEmpty()) return {};
+  const Box skin{box.min().cast<double>() + origin_m, box.max().cast<double>() + origin_m};
+  return inflated(skin, kRoom * skin.size().norm());
+}
 
 // The skin's points within a solid's bounds, in world space.
 void gather(const Box& bounds, const Vec3& origin_m, std::span<const Vector4f> position,
@@ -26,7 +37,8 @@ void gather(const Box& bounds, const Vec3& origin_m, std::span<const Vector4f> p
 }
 
 // Moves pressed points out of one solid; notes by how much.
-void pressOut(const Field& field, SolidId solid, std::span<Vector4f> position, Dents::Scratch& s) {
+void pressOut(const DistanceField& field, SolidId solid, std::span<Vector4f> position,
+              Dents::Scratch& s) {
   FASCIA_ASSERT(s.point.size() == s.inside.size() && s.ring.size() == position.size(),
                 "the points inside are gathered");
   const std::size_t count = s.inside.size();
@@ -90,19 +102,20 @@ void Dents::press(const PoseMesh& mesh, const PoseObstacles& obstacles, const Ve
   s.active.clear();
   s.shift.resize(position.size());
   s.next.resize(position.size());
-  for (std::size_t n = obstacles.first; n < obstacles.field->solidCount(); ++n) {
-    const SolidId solid(static_cast<std::int64_t>(n));
-    gather(obstacles.field->bounds(solid), origin_m, position, s);
-    if (!s.inside.empty()) pressOut(*obstacles.field, solid, position, s);
-  }
+  const Box skin = boxOf(position, origin_m);
+  const auto pressOutOfAll = [&] {
+    for (std::size_t n = obstacles.first; n < obstacles.field->solidCount(); ++n) {
+      const SolidId solid(static_cast<std::int64_t>(n));
+      const Box bounds = obstacles.field->bounds(solid);
+      if (!meets(bounds, skin)) continue;
+      gather(bounds, origin_m, position, s);
+      if (!s.inside.empty()) pressOut(*obstacles.field, solid, position, s);
+    }
+  };
+  pressOutOfAll();
   if (s.active.empty()) return;
   giveWay(mesh, position, s);
-  // What gave way may have come into an obstacle itself.
-  for (std::size_t n = obstacles.first; n < obstacles.field->solidCount(); ++n) {
-    const SolidId solid(static_cast<std::int64_t>(n));
-    gather(obstacles.field->bounds(solid), origin_m, position, s);
-    if (!s.inside.empty()) pressOut(*obstacles.field, solid, position, s);
-  }
+  pressOutOfAll();  // what gave way may have come into an obstacle itself
 }
 
 }  // namespace fascia

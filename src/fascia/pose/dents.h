@@ -12,7 +12,7 @@ namespace fascia {
 
 // Solids of a field that stand around a figure (props, a scene's bodies): those from `first` on.
 struct PoseObstacles {
-  const Field* field = nullptr;
+  const DistanceField* field = nullptr;
   std::size_t first = 0;
 };
 

@@ -189,7 +189,7 @@ Layers parseLayers(std::string_view text) {
 
 Box visibleBounds(const CharacterState& state, const TriangleMesh& skin, const Layers& layers) {
   Box box;
-  const auto addSolids = [&box](const Field& flesh) {
+  const auto addSolids = [&box](const DistanceField& flesh) {
     for (std::size_t i = 0; i < flesh.solidCount(); ++i)
       box.add(flesh.bounds(SolidId(static_cast<std::int64_t>(i))));
   };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fascia/math/ode/integrators.h>
+#include <fascia/math/ode/stability.h>
 
 namespace fascia {
 namespace {
@@ -12,15 +13,19 @@ namespace {
 // of Turner & Gobbetti 1998, eq. 8.
 constexpr double kSpeedThreshold_m_per_s = 0.1;
 
+// Error control alone lets a method swing up where it is barely stable.
+constexpr double kShareOfStable = 0.7;
+
 StepperOptions optionsOf(const Skin& skin) {
   const SkinSettings& s = skin.settings();
+  const double stable_s = std::max(kShareOfStable * longestOdeStep_s(skin), 1e-9);
   StepperOptions o;
   o.tolerance = s.position_tolerance_m;
-  o.step_min_s = s.min_step_s;
-  o.step_max_s = std::max(s.min_step_s, s.max_step_s);
+  o.step_min_s = std::min(s.min_step_s, stable_s);
+  o.step_max_s = std::min(std::max(s.min_step_s, s.max_step_s), stable_s);
   // Fixed-step methods have no error estimate to find a step with: half of what the material
   // allows.
-  o.fixed_step_s = s.step_s > 0 ? s.step_s : 0.5 * skin.defaultStep_s();
+  o.fixed_step_s = std::min(s.step_s > 0 ? s.step_s : 0.5 * skin.defaultStep_s(), stable_s);
   o.correction_limit_m = s.correction_tolerance_m;
   o.move_limit_m = 0.25 * skin.size_m();
   o.integrator.position_scale = {.threshold = 1, .relative = false};
@@ -30,6 +35,19 @@ StepperOptions optionsOf(const Skin& skin) {
 }
 
 }  // namespace
+
+double longestOdeStep_s(const Skin& skin) {
+  const PointModel& points = skin.points();
+  double stiffest_per_s2 = 0, leastDrag_per_s = HUGE_VAL;
+  for (std::size_t k = 0; k < points.mass.size(); ++k) {
+    if (points.free[k] == 0 || !(points.mass[k] > 0)) continue;
+    stiffest_per_s2 = std::max(stiffest_per_s2, double{points.stiffnessBound[k]} / points.mass[k]);
+    leastDrag_per_s = std::min(leastDrag_per_s, double{points.drag[k]} / points.mass[k]);
+  }
+  if (!(stiffest_per_s2 > 0)) return HUGE_VAL;
+  return longestStableStep_s(*makeIntegrator(skin.settings().integrator),
+                             std::sqrt(stiffest_per_s2), leastDrag_per_s);
+}
 
 OdeSkin::OdeSkin(const Skin& skin)
     : skin_(skin),
@@ -89,8 +107,14 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, SkinC
         {around.anchorVelocity.x[k], around.anchorVelocity.y[k], around.anchorVelocity.z[k]}};
   }
   dampingPlace_.clear();  // the anchors are others now
+  // All that goes on is in the state, so that copies of it go on alike.
+  if (state.odeStep_s > 0)
+    stepper_.resume(state.odeStep_s);
+  else
+    stepper_.reset();
   stepper_.resetStats();
   stepper_.advance(*this, ode_, end_s);
+  state.odeStep_s = stepper_.nextStep_s();
   load(ode_.r, state.position);
   load(ode_.v, state.velocity);
 

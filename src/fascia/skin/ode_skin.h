@@ -6,6 +6,10 @@
 
 namespace fascia {
 
+// The longest step with which the settings' integrator keeps the skin from swinging up by itself:
+// of its stiffest point, damped by the least drag of any. 0: none is short enough.
+double longestOdeStep_s(const Skin& skin);
+
 // A skin as the solver library sees it: the paper's equation of motion with all its forces, and
 // non-penetration after every accepted step (Turner & Gobbetti 1998, §4.2). Coordinate 3p + c for
 // point p.

@@ -143,6 +143,7 @@ struct SkinState {
   std::vector<Transform> joints;   // the pose of the last interval's end
   JiggleState jiggle;              // of an imported mesh that is not simulated
   float maxSpeed_m_per_s = 0;      // at the end of the last interval
+  double odeStep_s = 0;            // that an adaptive integrator goes on with; 0: its first
   bool ready = false;              // surroundings belong to this state's time
   bool starting = false;           // moves with its flesh from the first interval on, unlagging
 

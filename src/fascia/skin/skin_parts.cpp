@@ -92,7 +92,8 @@ SolidId SkinReport::findSolid(const std::string& where, const std::string& name)
   return id;
 }
 
-NearestFlesh nearestFlesh(const Field& field, const Vec3& p, std::span<const SolidId> solids) {
+NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p,
+                          std::span<const SolidId> solids) {
   const float x = static_cast<float>(p.x()), y = static_cast<float>(p.y()),
               z = static_cast<float>(p.z());
   NearestFlesh best;
@@ -104,7 +105,7 @@ NearestFlesh nearestFlesh(const Field& field, const Vec3& p, std::span<const Sol
   return best;
 }
 
-NearestFlesh nearestFlesh(const Field& field, const Vec3& p) {
+NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p) {
   std::vector<SolidId> all;
   for (std::size_t s = 0; s < field.solidCount(); ++s)
     all.emplace_back(static_cast<std::int64_t>(s));

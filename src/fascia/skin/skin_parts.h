@@ -40,8 +40,9 @@ struct NearestFlesh {
   SolidId solid;
   Vec3 normal = Vec3::UnitY();
 };
-NearestFlesh nearestFlesh(const Field& field, const Vec3& p, std::span<const SolidId> solids);
-NearestFlesh nearestFlesh(const Field& field, const Vec3& p);  // of all
+NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p,
+                          std::span<const SolidId> solids);
+NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p);  // of all
 
 // Regions and brushes on the points of a skin. A rig has weights, a grid (rig = nullptr) u and v.
 struct EditPoint {

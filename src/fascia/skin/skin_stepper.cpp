@@ -30,6 +30,9 @@ constexpr float kSelfReach = 0.002f;
 // The farthest that flesh contacts are looked for where points may only slide so far from their
 // anchors; a share of the skin's size.
 constexpr float kSlidingReach = 0.02f;
+// How often stretched skin is shortened and taken out of the flesh again in one interval, at most.
+constexpr int kStretchRounds = 8;
+constexpr float kStretchedBeyond = 0.1f;  // as long as an edge is longer than it may be by so much
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
 
@@ -65,6 +68,7 @@ SkinStepper::SkinStepper(const Skin& skin)
     : skin_(skin),
       placer_(skin.attachment().makePlacer()),
       surface_(skin.topology().makeStepper()),
+      stretchLimit_(skin.topology().makeStretchLimit()),
       contact_(skin.makeContact()) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
@@ -253,20 +257,32 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   // Skin against itself comes before the flesh, which has the last word.
   if (skin_.selfContact())
     selfContact_.separate(skin_.points(), kSelfReach * static_cast<float>(skin_.size_m()),
-                          state.position, state.velocity, static_cast<float>(duration_s));
+                          state.position, state.velocity, static_cast<float>(duration_s),
+                          state.surroundings.fleshNormal);
+  stretchLimit_.apply(skin_.points(), state.position, state.velocity);
   // More than the way that the fastest point goes until the next test.
   const auto size = static_cast<float>(skin_.size_m());
   const float reach =
       std::min(1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) + 0.005f * size,
                skin_.points().slideLimit.empty() ? size : kSlidingReach * size);
-  state.maxSpeed_m_per_s = contact_
-                               ->project(*pose.field, skin_.points(), reach,
-                                         static_cast<float>(skin_.contactResponse().restitution),
-                                         state.position, state.velocity, state.surroundings)
-                               .maxSpeed_m_per_s;
-  if (skin_.selfContact())
+  const auto leaveFlesh = [&] {
+    const SkinContact::Result result = contact_->project(
+        *pose.field, skin_.points(), reach, static_cast<float>(skin_.contactResponse().restitution),
+        state.position, state.velocity, state.surroundings);
+    state.maxSpeed_m_per_s = result.maxSpeed_m_per_s;
+  };
+  leaveFlesh();
+  // What flesh pushes out pulls at what lies around it.
+  for (int round = 0; round < kStretchRounds; ++round) {
+    if (!stretchLimit_.exceeded(state.position, kStretchedBeyond)) break;
+    stretchLimit_.apply(skin_.points(), state.position, state.velocity);
+    leaveFlesh();
+  }
+  if (skin_.selfContact()) {
+    state.surroundings.fleshNormal = state.surroundings.normal;
     selfContact_.writeHalfSpaces(state.position, state.velocity, static_cast<float>(duration_s),
                                  state.surroundings);
+  }
   skin_.topology().complete(state.position);
 }
 

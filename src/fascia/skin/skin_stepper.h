@@ -40,6 +40,7 @@ class SkinStepper final : public SkinRun {
   std::unique_ptr<PointPlacer> placer_;
   StepCoefficients coefficients_;
   std::unique_ptr<SurfaceStepper> surface_;
+  StretchLimit stretchLimit_;
   std::unique_ptr<SkinContact> contact_;
   SelfContact selfContact_;
   FatPressure fatPressure_;

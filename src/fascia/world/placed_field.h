@@ -15,6 +15,7 @@ class PlacedField final : public Field {
   Box bounds(SolidId solid) const override;
   void evaluate(SolidId solid, ConstVectors points, float* distance_m,
                 Vectors normal) const override;
+  double lipschitz(SolidId solid) const override { return field_->lipschitz(solid); }
   Transform frame(SolidId solid) const override { return place_ * field_->frame(solid); }
   const Outline& outline(SolidId solid) const override { return field_->outline(solid); }
   void velocity(SolidId solid, ConstVectors points, Vectors velocity) const override;

@@ -6,6 +6,7 @@
 #include <fascia/base/error.h>
 #include <fascia/deformable/bases/check_range.h>
 #include <fascia/deformable/contact/contact_search.h>
+#include <fascia/deformable/contact/overlap_search.h>
 
 namespace fascia {
 namespace {
@@ -25,7 +26,8 @@ BodyContacts::BodyContacts(const BodyModel& model, const Vec3& gravity_m_per_s2,
       gravity_m_per_s2_(gravity_m_per_s2.norm()),
       bodies_(model.bodyCount()),
       set_(model),
-      search_(std::make_unique<ContactSearch>(*this)) {
+      search_(std::make_unique<ContactSearch>(*this)),
+      overlaps_(std::make_unique<OverlapSearch>(*this)) {
   checkRange("contacts", "friction", settings.friction, 0, kMaxFriction);
   checkRange("contacts", "margin_m", settings.margin_m, 0, 1e3);
   checkRange("contacts", "creep_per_s", settings.creep_per_s, 1e-9, 1);
@@ -56,24 +58,18 @@ void BodyContacts::collidePair(BodyId a, BodyId b) {
   std::erase(ignored_, ordered(a, b));
 }
 
-ObstacleId BodyContacts::addObstacle(const Field& field, std::optional<double> friction) {
+ObstacleId BodyContacts::addObstacle(const MovingField& field, std::optional<double> friction) {
   const double mu = friction.value_or(settings_.friction);
   checkRange("contacts", "friction", mu, 0, kMaxFriction);
-  obstacles_.push_back({ObstacleId(nextObstacle_++), &field, mu});
-  return obstacles_.back().id;
+  return obstacles_.add(field, mu);
 }
 
 ObstacleId BodyContacts::addPadding(const SurfaceField& surface, double modulus_Pa,
                                     std::optional<double> friction) {
   checkRange("contacts", "modulus_Pa", modulus_Pa, 1, 1e12);
-  const ObstacleId id = addObstacle(surface, friction);
-  obstacles_.back().padding = &surface;
-  obstacles_.back().modulus_Pa = modulus_Pa;
-  return id;
-}
-
-void BodyContacts::removeObstacle(ObstacleId obstacle) {
-  std::erase_if(obstacles_, [&](const Obstacle& o) { return o.id == obstacle; });
+  const double mu = friction.value_or(settings_.friction);
+  checkRange("contacts", "friction", mu, 0, kMaxFriction);
+  return obstacles_.addPadding(surface, modulus_Pa, mu);
 }
 
 bool BodyContacts::collides(BodyId a, BodyId b) const {
@@ -108,8 +104,14 @@ void BodyContacts::refresh() {
 ContactSet& BodyContacts::find(const Step& step) {
   refresh();
   if (settings_.bodies_collide) field_.update(step.q, step.v);
+  obstacles_.update(step.h_s + step.lead_s);
   search_->find(step, field_, set_);
   return set_;
+}
+
+void BodyContacts::findOverlaps(std::span<const double> q, double leastShare,
+                                std::vector<Overlap>& out) {
+  overlaps_->find(q, leastShare, out);
 }
 
 }  // namespace fascia

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include <fascia/contact/obstacles.h>
 #include <fascia/deformable/body/body_field.h>
 #include <fascia/deformable/contact/contact_points.h>
 #include <fascia/deformable/contact/contact_set.h>
-#include <fascia/field/surface_field.h>
 
 namespace fascia {
 
@@ -26,11 +26,9 @@ struct ContactSettings {
   bool bodies_collide = true;
 };
 
-using ObstacleId = Id<struct ObstacleTag>;
-
 // What the bodies of a system must not enter: the ground, solids that stand or move by themselves,
 // each other. Belongs to a BodySystem (setContacts()); BodyStepper's implicit Euler scheme obeys
-// it. Bodies take part that have a surface. Each contact is the energy of contact_potential.h with
+// it. Bodies take part that have a surface. Each contact is a LogBarrier and a SlideEnergy with
 //     k = max(30 m_eff/h², m g/(4 δ)),   m_eff = 1/(|s_a|² + |s_b|²),
 // m the mass of the heaviest body: then what falls with less than 900 δ/h stops outside, and a
 // corner carries thirty such k δ, eight times the heaviest body, before it is inside.
@@ -51,12 +49,12 @@ class BodyContacts {
   void collidePair(BodyId a, BodyId b);  // these do again
   // Solids whose place is that of the end of the next step, and whose velocity took them there.
   // They may be posed anew between steps and must stay where they are in memory until removed.
-  ObstacleId addObstacle(const Field& field, std::optional<double> friction = {});
+  ObstacleId addObstacle(const MovingField& field, std::optional<double> friction = {});
   // A surface below which matter gives way as far as `surface` says, as a layer of `modulus_Pa` on
   // something hard: contacts begin at the surface, and harden towards the bottom of the layer.
   ObstacleId addPadding(const SurfaceField& surface, double modulus_Pa,
                         std::optional<double> friction = {});
-  void removeObstacle(ObstacleId obstacle);
+  void removeObstacle(ObstacleId obstacle) { obstacles_.remove(obstacle); }
 
   // The contacts of the last step, at its end: for sounds, marks, scripts.
   const ContactSet& contacts() const { return set_; }
@@ -87,36 +85,27 @@ class BodyContacts {
 
  private:
   friend class ContactSearch;
+  friend class OverlapSearch;
   struct Body {
     BodySurfacePtr surface;
     std::shared_ptr<const ContactPoints> points;
     double friction = 0;
     SolidId solid;  // in field_
   };
-  struct Obstacle {
-    ObstacleId id;
-    const Field* field;
-    double friction;
-    const SurfaceField* padding = nullptr;  // `field`, if it gives way
-    double modulus_Pa = 0;
-  };
   void refresh();
-  void placePoints(BodyId body, std::span<const double> q, VectorArray& points) const;
-  double depthOf(const VectorArray& points, const Field& field, SolidId solid) const;
   bool collides(BodyId a, BodyId b) const;
 
   const BodyModel& model_;
   ContactSettings settings_;
   double gravity_m_per_s2_, heaviest_kg_ = 0;
   std::vector<Body> bodies_;
-  std::vector<Obstacle> obstacles_;
+  Obstacles obstacles_;
   std::vector<Pair> ignored_, ties_;  // sorted
-  int nextObstacle_ = 0;
   bool changed_ = true;
   BodyField field_;
   ContactSet set_;
-  std::vector<double> still_;  // velocities of none
   std::unique_ptr<class ContactSearch> search_;
+  std::unique_ptr<class OverlapSearch> overlaps_;
 };
 
 }  // namespace fascia

@@ -1,11 +1,9 @@
 #include <fascia/deformable/contact/contact_search.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fascia/deformable/body/for_each_body.h>
-#include <fascia/geometry/box_tree.h>
 #include <fascia/math/points.h>
 
 namespace fascia {
@@ -14,9 +12,6 @@ namespace {
 constexpr std::size_t kSearchesPerTask = 8;
 // Ways shorter than so many margins are not traced: nothing gets lost in them.
 constexpr double kShortWay = 4;
-constexpr int kMaxTraceSteps = 16;
-// Distances of deformed solids are of first order: less than the whole is safe.
-constexpr double kTraceShare = 0.8;
 // Who begins inside of something is let out by so much of its size per second, not shot.
 constexpr double kRecovery_per_s = 1;
 // Of m_eff/h², see BodyContacts. Larger: smaller gaps and more iterations between bodies.
@@ -31,26 +26,6 @@ constexpr double kFlat = 0.2;
 
 Vec3 rounded(const Vec3& v) {
   return v.cast<float>().cast<double>();
-}
-
-Box inflated(const Box& box, double by_m) {
-  return {box.low.array() - by_m, box.high.array() + by_m};
-}
-
-// The fastest corner of a solid, m/s.
-double speedOf(const Field& field, SolidId solid) {
-  const Transform frame = field.frame(solid);
-  std::array<float, Field::kOutline> x, y, z, vx, vy, vz;
-  for (std::size_t c = 0; c < Field::kOutline; ++c) {
-    const Eigen::Vector3f p = frame.point(field.outline(solid)[c]).cast<float>();
-    x[c] = p.x(), y[c] = p.y(), z[c] = p.z();
-  }
-  const Vectors velocity{vx.data(), vy.data(), vz.data(), Field::kOutline};
-  field.velocity(solid, {x.data(), y.data(), z.data(), Field::kOutline}, velocity);
-  double fastest = 0;
-  for (std::size_t c = 0; c < Field::kOutline; ++c)
-    fastest = std::max(fastest, pointAt(velocity, c).norm());
-  return fastest;
 }
 
 }  // namespace
@@ -68,17 +43,18 @@ void ContactSearch::resize() {
     work.distance_m.resize(count), work.endDistance_m.resize(count), work.depth_m.resize(count);
     work.picked.reserve(count), work.found.reserve(count);
   }
-  order_.clear();
-  for (std::size_t b = 0; b < work_.size(); ++b)
-    if (contacts_.bodies_[b].points) order_.push_back(b);
+  boxes_.resize(work_.size());
 }
 
 void ContactSearch::find(const BodyContacts::Step& step, const BodyField& bodies, ContactSet& set) {
   step_ = step;
+  bodyField_ = &bodies;
   forEachBody(work_.size(), kSearchesPerTask, [&](BodyId body) { movePoints(body); });
-  findNearBodies();
-  gatherObstacles();
-  forEachBody(work_.size(), kSearchesPerTask, [&](BodyId body) { findContacts(body, bodies); });
+  if (contacts_.settings_.bodies_collide) {
+    std::ranges::transform(work_, boxes_.begin(), &Work::box);
+    bodies_.update(boxes_);
+  }
+  forEachBody(work_.size(), kSearchesPerTask, [&](BodyId body) { findContacts(body); });
   set.clear();
   for (Work& work : work_) {
     for (Found& found : work.found) {
@@ -100,9 +76,10 @@ double ContactSearch::stiffnessOf(BodyId body, const Contact& contact, const Tar
   const double margin_m = contact.energy.margin;
   const double forLoad =
       kLoadStiffness * contacts_.heaviest_kg_ * contacts_.gravity_m_per_s2_ / margin_m;
-  if (!target.padding) return std::max(kStiffness * contact.inertia_N_per_m, forLoad);
+  if (!target.obstacle || !target.obstacle->padding)
+    return std::max(kStiffness * contact.inertia_N_per_m, forLoad);
   const double area_m2 = contacts_.bodies_[body.index()].points->area_m2;
-  return std::max(target.modulus_Pa * area_m2 / margin_m, forLoad);
+  return std::max(target.obstacle->modulus_Pa * area_m2 / margin_m, forLoad);
 }
 
 // Where the points are at the beginning of the step, and their first guess of a way.
@@ -130,57 +107,24 @@ void ContactSearch::movePoints(BodyId body) {
   work.box = inflated(work.box, marginOf(body, model.shape(body).size_m()));
 }
 
-// Boxes that meet, by sweeping along x.
-void ContactSearch::findNearBodies() {
-  if (!contacts_.settings_.bodies_collide) return;
-  const auto left = [&](std::size_t b) { return work_[b].box.low.x(); };
-  std::ranges::sort(order_, [&](std::size_t a, std::size_t b) {
-    return left(a) < left(b) || (left(a) == left(b) && a < b);
-  });
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    Work& a = work_[order_[i]];
-    for (std::size_t j = i + 1; j < order_.size(); ++j) {
-      Work& b = work_[order_[j]];
-      if (b.box.low.x() > a.box.high.x()) break;
-      if (!meets(a.box, b.box)) continue;
-      if (!contacts_.collides(BodyId(order_[i]), BodyId(order_[j]))) continue;
-      a.near.push_back(order_[j]);
-      b.near.push_back(order_[i]);
-    }
-  }
-}
-
-void ContactSearch::gatherObstacles() {
-  obstacles_.clear();
-  for (const BodyContacts::Obstacle& obstacle : contacts_.obstacles_) {
-    for (std::size_t s = 0; s < obstacle.field->solidCount(); ++s) {
-      const SolidId solid(s);
-      Target target{obstacle.field,
-                    solid,
-                    obstacle.field->bounds(solid),
-                    obstacle.friction,
-                    HUGE_VAL,
-                    {},
-                    obstacle.padding,
-                    obstacle.modulus_Pa};
-      if (target.bounds.empty()) continue;
-      target.bounds =
-          inflated(target.bounds, speedOf(*obstacle.field, solid) * (step_.h_s + step_.lead_s));
-      obstacles_.push_back(target);
-    }
-  }
-}
-
-void ContactSearch::findContacts(BodyId body, const BodyField& bodies) {
+void ContactSearch::findContacts(BodyId body) {
   Work& work = work_[body.index()];
   if (work.start.cols() == 0) return;
   meetGround(body);
-  for (const Target& target : obstacles_)
-    if (meets(work.box, target.bounds)) meet(body, target);
-  for (const std::size_t other : work.near) {
-    const BodyContacts::Body& b = contacts_.bodies_[other];
-    meet(body, {&bodies, b.solid, work_[other].box, b.friction,
-                contacts_.model_.shape(BodyId(other)).size_m(), BodyId(other)});
+  contacts_.obstacles_.find(work.box, work.near);
+  for (const std::uint32_t number : work.near) {
+    const Obstacles::Part& part = contacts_.obstacles_.parts()[number];
+    meet(body, {part.obstacle->field, part.solid, part.bounds, part.obstacle->friction, HUGE_VAL,
+                BodyId(), part.obstacle});
+  }
+  if (!contacts_.settings_.bodies_collide) return;
+  bodies_.find(work.box, work.near);
+  for (const std::uint32_t number : work.near) {
+    const BodyId other(number);
+    if (other == body || !contacts_.collides(body, other)) continue;
+    const BodyContacts::Body& b = contacts_.bodies_[number];
+    meet(body, {bodyField_, b.solid, work_[number].box, b.friction,
+                contacts_.model_.shape(other).size_m(), other});
   }
 }
 
@@ -189,10 +133,10 @@ void ContactSearch::meetGround(BodyId body) {
   const Work& work = work_[body.index()];
   const double ground_m = *contacts_.settings_.ground_m;
   if (work.box.low.y() > ground_m + marginOf(body, HUGE_VAL)) return;
-  const Target target{nullptr, {}, {}, contacts_.settings_.friction, HUGE_VAL, {}};
+  const Target target{nullptr, {}, {}, contacts_.settings_.friction, HUGE_VAL, BodyId()};
   for (int i = 0; i < work.start.cols(); ++i) {
     const Vec3 start = work.start.col(i), way = work.way.col(i);
-    addContact(body, i, {start, start.y() - ground_m, Vec3::UnitY()}, start, way, Vec3::Zero(),
+    addContact(body, i, {{start, start.y() - ground_m, Vec3::UnitY()}}, start, way, Vec3::Zero(),
                target);
   }
 }
@@ -230,45 +174,31 @@ void ContactSearch::meet(BodyId body, const Target& target) {
   for (std::size_t i = 0; i < count; ++i) setPoint(work.place, i, start(i) + way(i));
   target.field->evaluate(target.solid, first(work.place), work.endDistance_m.data(),
                          first(work.endNormal));
-  if (target.padding) target.padding->softness(first(work.place), work.depth_m.data());
+  const SurfaceField* padding = target.obstacle ? target.obstacle->padding : nullptr;
+  if (padding) padding->softness(first(work.place), work.depth_m.data());
   const double size_m = std::min(contacts_.model_.shape(body).size_m(), target.size_m);
   const bool tangled = target.body.valid() &&
                        std::any_of(work.distance_m.begin(),
                                    work.distance_m.begin() + static_cast<std::ptrdiff_t>(count),
                                    [&](float d) { return d < -kDeep * size_m; });
+  const double steepness = target.field->lipschitz(target.solid);
   for (std::size_t i = 0; i < count; ++i) {
-    const Plane begin{rounded(start(i)), work.distance_m[i], pointAt(first(work.normal), i)};
-    const Plane end{rounded(start(i) + way(i)), work.endDistance_m[i],
-                    pointAt(first(work.endNormal), i)};
+    const Nearness begin{rounded(start(i)), work.distance_m[i], pointAt(first(work.normal), i)};
+    const Nearness end{rounded(start(i) + way(i)), work.endDistance_m[i],
+                       pointAt(first(work.endNormal), i)};
     const double length_m = way(i).norm();
-    const bool covered = begin.distance_m + end.distance_m >= length_m && end.distance_m >= 0;
-    const bool isShort = length_m <= kShortWay * margin_m;
-    Plane plane = tangled ? begin : covered || isShort ? end : trace(begin, end, target, margin_m);
-    if (tangled && plane.distance_m >= 0) continue;
-    plane.deep = tangled;
-    if (target.padding) plane.depth_m = work.depth_m[i];
+    const bool covered =
+        begin.distance_m + end.distance_m >= steepness * length_m && end.distance_m >= 0;
+    Plane plane{tangled ? begin : end, 0, tangled};
+    if (!tangled && !covered && length_m > kShortWay * margin_m)
+      plane.at = trace(*target.field, target.solid, begin, end.place_m - begin.place_m, margin_m)
+                     .value_or(end);
+    if (tangled && plane.at.distance_m >= 0) continue;
+    if (padding) plane.depth_m = work.depth_m[i];
     const Vec3 drift = step_.h_s * pointAt(first(work.velocity), i);
     addContact(body, work.picked[i], plane, start(i), way(i),
                target.body.valid() ? Vec3(Vec3::Zero()) : drift, target);
   }
-}
-
-ContactSearch::Plane ContactSearch::trace(const Plane& first, const Plane& last,
-                                          const Target& target, double margin_m) {
-  const Vec3 way = last.place_m - first.place_m;
-  const double length_m = way.norm();
-  Plane plane = first;
-  double passed_m = 0;
-  for (int step = 0; step < kMaxTraceSteps && plane.distance_m > margin_m; ++step) {
-    passed_m += kTraceShare * plane.distance_m;
-    if (passed_m >= length_m) return last;
-    const Eigen::Vector3f place = (first.place_m + passed_m / length_m * way).cast<float>();
-    float distance_m, nx, ny, nz;
-    target.field->evaluate(target.solid, {&place.x(), &place.y(), &place.z(), 1}, &distance_m,
-                           {&nx, &ny, &nz, 1});
-    plane = {place.cast<double>(), distance_m, Vec3(nx, ny, nz)};
-  }
-  return plane;
 }
 
 // From one body's middle to the other's: all deep points of both go the same way.
@@ -284,15 +214,16 @@ void ContactSearch::addContact(BodyId body, int point, Plane plane, const Vec3& 
                                const Vec3& way, const Vec3& drift_m, const Target& target) {
   const BodyModel& model = contacts_.model_;
   const double facing =
-      model.dimension() == 3 ? plane.normal.norm() : plane.normal.head<2>().norm();
+      model.dimension() == 3 ? plane.at.normal.norm() : plane.at.normal.head<2>().norm();
   if (facing < kFlat) return;
   Contact contact;
-  contact.normal = plane.normal / facing;
+  contact.normal = plane.at.normal / facing;
   if (model.dimension() == 2) contact.normal.z() = 0;
   contact.drift_m = drift_m;
   contact.gap_m =
-      plane.distance_m / facing + contact.normal.dot(start - plane.place_m) + plane.depth_m;
-  contact.energy.margin = target.padding ? plane.depth_m : marginOf(body, target.size_m);
+      plane.at.distance_m / facing + contact.normal.dot(start - plane.at.place_m) + plane.depth_m;
+  const bool padded = target.obstacle && target.obstacle->padding;
+  contact.energy.margin = padded ? plane.depth_m : marginOf(body, target.size_m);
   const double end_m = contact.gap_m + contact.normal.dot(way);
   // Beyond this nothing will come near that is not on its way already.
   const double reach_m = 2 * contact.energy.margin + 0.25 * way.norm() +
@@ -309,11 +240,12 @@ void ContactSearch::addContact(BodyId body, int point, Plane plane, const Vec3& 
   const std::size_t firstWeight = work.weights.size();
   if (target.body.valid()) {
     const BodyShape& other = model.shape(target.body);
-    const Vec3 touched =
-        plane.deep ? plane.place_m : Vec3(plane.place_m - plane.distance_m * plane.normal);
+    const Vec3 touched = plane.deep
+                             ? plane.at.place_m
+                             : Vec3(plane.at.place_m - plane.at.distance_m * plane.at.normal);
     work.weights.resize(firstWeight + static_cast<std::size_t>(other.shapeCount()));
     Eigen::Map<Eigen::VectorXd> s(work.weights.data() + firstWeight, other.shapeCount());
-    other.pointWeights(target.field->materialFromWorld(target.solid, touched), s);
+    other.pointWeights(bodyField_->materialFromWorld(target.solid, touched), s);
     contact.b = {target.body, model.offset(target.body), nullptr, other.shapeCount()};
     mobility_per_kg += s.squaredNorm();
   }

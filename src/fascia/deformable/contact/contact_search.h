@@ -2,14 +2,14 @@
 
 #include <vector>
 
+#include <fascia/contact/trace.h>
 #include <fascia/deformable/contact/body_contact.h>
 
 namespace fascia {
 
 // Finds the contacts of a step, as planes. A point that moves little is measured at the end of its
-// first guess of a way. One that could pass through something is led along its way by steps no
-// longer than its distance (sphere tracing, Hart 1996) and meets the plane where it comes near:
-// so nothing is too thin or too fast, as far as distances are not overestimated.
+// first guess of a way. One that could pass through something is traced along its way (trace.h) and
+// meets the plane where it comes near.
 class ContactSearch {
  public:
   explicit ContactSearch(const BodyContacts& contacts) : contacts_(contacts) {}
@@ -20,18 +20,15 @@ class ContactSearch {
  private:
   // What a body's points are held against.
   struct Target {
-    const Field* field;
+    const MovingField* field;
     SolidId solid;
     Box bounds;  // of its whole way
     double friction, size_m;
-    BodyId body;  // invalid: an obstacle
-    const SurfaceField* padding = nullptr;
-    double modulus_Pa = 0;
+    BodyId body;                         // invalid: no body
+    const Obstacle* obstacle = nullptr;  // nullptr: no obstacle. Neither: the ground
   };
   struct Plane {
-    Vec3 place_m;  // where the distance is from
-    double distance_m;
-    Vec3 normal;
+    Nearness at;
     double depth_m = 0;  // that padding has there
     bool deep = false;   // inside of a body that it is tangled with
   };
@@ -45,20 +42,17 @@ class ContactSearch {
     Box box;  // of the whole ways, with the margin
     std::vector<Found> found;
     std::vector<double> weights;
-    std::vector<std::size_t> near;  // bodies
-    std::vector<int> picked;        // points that may meet the target at hand
+    std::vector<std::uint32_t> near;  // bodies, or parts of obstacles
+    std::vector<int> picked;          // points that may meet the target at hand
     VectorArray place, normal, endNormal, velocity;
     FloatArray distance_m, endDistance_m, depth_m;
   };
 
   void movePoints(BodyId body);
-  void findNearBodies();
-  void gatherObstacles();
-  void findContacts(BodyId body, const BodyField& bodies);
+  void findContacts(BodyId body);
   void meetGround(BodyId body);
   void meet(BodyId body, const Target& target);
   bool pick(Work& work, const Box& bounds) const;
-  static Plane trace(const Plane& first, const Plane& last, const Target& target, double margin_m);
   void addContact(BodyId body, int point, Plane plane, const Vec3& start, const Vec3& way,
                   const Vec3& drift_m, const Target& target);
   Vec3 wayApart(BodyId body, BodyId other) const;
@@ -70,10 +64,11 @@ class ContactSearch {
   }
 
   const BodyContacts& contacts_;
+  const BodyField* bodyField_ = nullptr;
   BodyContacts::Step step_{};
   std::vector<Work> work_;
-  std::vector<Target> obstacles_;
-  std::vector<std::size_t> order_;  // bodies, along x
+  std::vector<Box> boxes_;  // of bodies
+  BroadPhase bodies_;
 };
 
 }  // namespace fascia

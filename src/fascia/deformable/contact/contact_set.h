@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include <fascia/contact/slide_energy.h>
 #include <fascia/deformable/body/body_model.h>
-#include <fascia/deformable/contact/contact_potential.h>
 #include <fascia/math/log_barrier.h>
 
 namespace fascia {

@@ -89,6 +89,12 @@ void AdaptiveStepper::reset() {
   integrator_->reset();
 }
 
+void AdaptiveStepper::resume(double nextStep_s) {
+  FASCIA_ASSERT(nextStep_s > 0, "a step lasts");
+  reset();
+  nextStep_s_ = nextStep_s;
+}
+
 void AdaptiveStepper::advance(SecondOrderSystem& system, OdeState& state, double target_s) {
   FASCIA_ASSERT(state.r.size() == system.size() && state.v.size() == system.size(),
                 "the state fits the system");

@@ -55,6 +55,8 @@ class AdaptiveStepper {
 
   // Forgets step size and warm starts: the same state then gives the same bits again.
   void reset();
+  // The same, but goes on with the step that nextStep_s() said when the state was left.
+  void resume(double nextStep_s);
 
   const Integrator& integrator() const { return *integrator_; }
   const StepperOptions& options() const { return options_; }

@@ -26,7 +26,7 @@ bool near(const BlockBox& a, const Box& b, float reach) {
 
 // One block of points against the solids of a field.
 struct BlockTest {
-  const Field& field;
+  const DistanceField& field;
   const PointBlock& block;
   ContactLanes& lanes;
   std::span<std::int32_t> nearby;  // scratch for as many as the field has solids
@@ -78,7 +78,7 @@ struct BlockTest {
   }
 
   // Each point's from its nearest solid: solids that swell take long to say how fast.
-  void readFleshVelocities() {
+  void readFleshVelocities(const MovingField& moving) {
     ContactLanes::Lanes3 place, velocity;
     std::array<std::size_t, PointBlock::kCapacity> lane;
     for (const std::int32_t s : nearby.first(nearbyCount)) {
@@ -91,7 +91,7 @@ struct BlockTest {
         lane[count++] = l;
       }
       if (count == 0) continue;
-      field.velocity(SolidId(s), place.view(count), velocity.view(count));
+      moving.velocity(SolidId(s), place.view(count), velocity.view(count));
       for (std::size_t i = 0; i < count; ++i) {
         lanes.fleshVelocity.x[lane[i]] = velocity.x[i];
         lanes.fleshVelocity.y[lane[i]] = velocity.y[i];
@@ -101,7 +101,7 @@ struct BlockTest {
   }
 };
 
-void readBoxes(const Field& field, std::vector<Box>& boxes) {
+void readBoxes(const DistanceField& field, std::vector<Box>& boxes) {
   boxes.resize(field.solidCount());
   for (std::size_t s = 0; s < boxes.size(); ++s)
     boxes[s] = field.bounds(SolidId(static_cast<std::int64_t>(s)));
@@ -112,7 +112,7 @@ void readBoxes(const Field& field, std::vector<Box>& boxes) {
 FleshContact::FleshContact(std::vector<PointBlock> blocks)
     : blocks_(std::move(blocks)), results_(blocks_.size()) {}
 
-FleshContact::Result FleshContact::project(const Field& field, const PointModel& points,
+FleshContact::Result FleshContact::project(const MovingField& field, const PointModel& points,
                                            float reach_m, float restitution, VectorArray& position,
                                            VectorArray& velocity, PointSurroundings& around) {
   FASCIA_ASSERT(velocity.size() == position.size() && points.fat.size() == position.size(),
@@ -151,7 +151,7 @@ FleshContact::Result FleshContact::project(const Field& field, const PointModel&
       }
       for (float& gap : gaps) gap -= kPushMargin * pushed;
       results_[b].maxCorrection_m = pushed;
-      if (any) test.readFleshVelocities();
+      if (any) test.readFleshVelocities(field);
       const std::size_t count = blocks_[b].count;
       const ContactFindings found{lanes.place.view(count), lanes.nearest.data(),
                                   lanes.nearestNormal.view(count), lanes.fleshVelocity.view(count)};
@@ -168,11 +168,12 @@ float FleshContact::approach(const BlockMotion& block, const SolidMotion& solid)
   const Eigen::Vector3f center(block.center[0], block.center[1], block.center[2]);
   const Eigen::Vector3f way(block.way[0], block.way[1], block.way[2]);
   const Eigen::Vector3f matter = solid.change * (center - solid.origin) + solid.shift;
-  return (way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m;
+  return solid.steepness *
+         ((way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m);
 }
 
 // The motion of each solid since the last call, from its outline.
-void FleshContact::followSolids(const Field& field) {
+void FleshContact::followSolids(const MovingField& field) {
   const std::size_t solids = boxes_.size();
   const bool first = motions_.size() != solids;
   if (first) {
@@ -183,12 +184,13 @@ void FleshContact::followSolids(const Field& field) {
   for (std::size_t s = 0; s < solids; ++s) {
     const SolidId id(static_cast<std::int64_t>(s));
     const Transform frame = field.frame(id);
-    const Field::Outline& outline = field.outline(id);
+    const MovingField::Outline& outline = field.outline(id);
     Corners now;
     for (std::size_t c = 0; c < kCorners; ++c) now[c] = frame.point(outline[c]).cast<float>();
     Eigen::Vector3f* before = corners_.data() + s * kCorners;
     if (first) std::copy(now.begin(), now.end(), before);
     motions_[s] = motionBetween(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
+    motions_[s].steepness = static_cast<float>(field.lipschitz(id));
     std::copy(now.begin(), now.end(), before);
   }
 }
@@ -220,7 +222,7 @@ FleshContact::SolidMotion FleshContact::motionBetween(
   return m;
 }
 
-float FleshContact::deepest(const Field& field, const PointModel& points,
+float FleshContact::deepest(const DistanceField& field, const PointModel& points,
                             const VectorArray& position) const {
   std::vector<Box> boxes;
   readBoxes(field, boxes);

@@ -19,9 +19,10 @@ class FleshContact final : public SkinContact {
   // Candidate solids come from boxes of blocks against boxes of solids, and from the gap that was
   // found when a block was last tested against a solid, less the ways both have gone since: solids
   // that cannot have come within reach are not asked again.
-  Result project(const Field& field, const PointModel& points, float reach_m, float restitution,
-                 VectorArray& position, VectorArray& velocity, PointSurroundings& around) override;
-  float deepest(const Field& field, const PointModel& points,
+  Result project(const MovingField& field, const PointModel& points, float reach_m,
+                 float restitution, VectorArray& position, VectorArray& velocity,
+                 PointSurroundings& around) override;
+  float deepest(const DistanceField& field, const PointModel& points,
                 const VectorArray& position) const override;
 
  private:
@@ -39,12 +40,13 @@ class FleshContact final : public SkinContact {
   struct SolidMotion {
     Eigen::Matrix3f change;
     Eigen::Vector3f origin, shift;
-    float turn;     // norm of change
-    float extra_m;  // what is not rigid: swelling and bending
+    float turn;           // norm of change
+    float extra_m;        // what is not rigid: swelling and bending
+    float steepness = 1;  // the field's Lipschitz bound: how much a way can change distances
   };
   static float approach(const BlockMotion& block, const SolidMotion& solid);
-  void followSolids(const Field& field);
-  static constexpr std::size_t kCorners = Field::kOutline;
+  void followSolids(const MovingField& field);
+  static constexpr std::size_t kCorners = MovingField::kOutline;
   using Corners = std::array<Eigen::Vector3f, kCorners>;
   static SolidMotion motionBetween(std::span<const Eigen::Vector3f, kCorners> before,
                                    const Corners& now);

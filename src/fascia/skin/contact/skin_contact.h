@@ -13,9 +13,9 @@ namespace fascia {
 
 // Non-penetration of skin and flesh (Turner & Gobbetti 1998, §4.1.4 and §4.2.3): every point keeps
 // the distance of its fat τ from every solid. The paper tests the point moved inward along the
-// skin's normal, g(r − τ n) ≥ 0; as a distance changes at most as fast as its point moves, d(r) ≥ τ
-// implies that for every n, also where the skin folds and its normal is doubtful. Knows nothing of
-// how points are connected.
+// skin's normal, g(r − τ n) ≥ 0; where a distance changes at most as fast as its point moves, d(r)
+// ≥ τ implies that for every n, also where the skin folds and its normal is doubtful. Knows nothing
+// of how points are connected.
 class SkinContact {
  public:
   virtual ~SkinContact() = default;
@@ -29,12 +29,12 @@ class SkinContact {
   // relative to the flesh, and writes each point's half space (normal, offset, flesh velocity) for
   // the steps that follow: the nearest solid within `reach_m`. A point in several solids is
   // projected in turn until it is outside of all, or kPasses are used up.
-  virtual Result project(const Field& field, const PointModel& points, float reach_m,
+  virtual Result project(const MovingField& field, const PointModel& points, float reach_m,
                          float restitution, VectorArray& position, VectorArray& velocity,
                          PointSurroundings& around) = 0;
 
   // How deep the deepest point is (m, ≥ 0), measured afresh and without changing anything.
-  virtual float deepest(const Field& field, const PointModel& points,
+  virtual float deepest(const DistanceField& field, const PointModel& points,
                         const VectorArray& position) const = 0;
 
  protected:

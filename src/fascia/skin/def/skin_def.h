@@ -41,7 +41,8 @@ constexpr auto tunables(const SkinMaterialDef*) {
       tunable(&M::drag_Ns_per_m3, "drag_Ns_per_m3", "N s/m³", {0, 1e5}, "Damps all motion"),
       tunable(&M::prestretch, "prestretch", "", {0.5, 3}, "Above 1: a taut stocking"),
       tunable(&M::max_stretch, "max_stretch", "", {1.01, 4},
-              "Beyond it the stress no longer grows"),
+              "Edges grow no longer than so many times their rest length, but for a tenth where "
+              "flesh pushes; nor does stress grow there"),
       tunable(&M::friction_per_s, "friction_per_s", "1/s", {0, 1e4},
               "Rate at which sliding on flesh dies away"),
       tunable(&M::restitution, "restitution", "", {0, 1}, "Bounce off the flesh")};

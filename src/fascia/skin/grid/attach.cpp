@@ -36,8 +36,8 @@ struct March {
   Vec3 at() const { return from_m + gone_m * inward; }
 };
 
-void attachPiece(const Field& field, ConstVectors points, ConstVectors normals, double fat_m,
-                 Attachment* out) {
+void attachPiece(const DistanceField& field, ConstVectors points, ConstVectors normals,
+                 double fat_m, Attachment* out) {
   NearestSolids flesh(field, kTouch_m);
   VectorArray at(NearestSolids::kBlock);
   std::vector<March> marching(points.count);
@@ -69,7 +69,7 @@ void attachPiece(const Field& field, ConstVectors points, ConstVectors normals, 
 
 }  // namespace
 
-std::vector<Attachment> attachAlongNormals(const Field& field, const GridLayout& layout,
+std::vector<Attachment> attachAlongNormals(const DistanceField& field, const GridLayout& layout,
                                            const VectorArray& points_m, const VectorArray& normals,
                                            double fat_m) {
   std::vector<Attachment> attachments(layout.pointCount());
@@ -80,7 +80,7 @@ std::vector<Attachment> attachAlongNormals(const Field& field, const GridLayout&
   return attachments;
 }
 
-std::vector<SolidId> nearestSolids(const Field& field, const GridLayout& layout,
+std::vector<SolidId> nearestSolids(const DistanceField& field, const GridLayout& layout,
                                    const VectorArray& points_m) {
   std::vector<SolidId> nearest(layout.pointCount());
   forEachPiece(layout, [&](const Piece& piece) {

@@ -17,12 +17,12 @@ struct Attachment {
 // "Attach all" (Turner & Gobbetti 1998, §4): every point of the grid to the flesh that its inward
 // normal meets, or to the nearest flesh at all where the normal meets none within four times that
 // distance and fat_m more. In the order of the points, row by row, ends included.
-std::vector<Attachment> attachAlongNormals(const Field& field, const GridLayout& layout,
+std::vector<Attachment> attachAlongNormals(const DistanceField& field, const GridLayout& layout,
                                            const VectorArray& points_m, const VectorArray& normals,
                                            double fat_m);
 
 // The solid nearest to each point, in the same order.
-std::vector<SolidId> nearestSolids(const Field& field, const GridLayout& layout,
+std::vector<SolidId> nearestSolids(const DistanceField& field, const GridLayout& layout,
                                    const VectorArray& points_m);
 
 }  // namespace fascia

@@ -57,6 +57,9 @@ class ElasticGrid {
     float cap = 1;               // plateau of (|e|² − G)/G: max_stretch² − 1
   };
   const Coefficients& coefficients() const { return c_; }
+  // Lengths in the rest shape of the edges (i, j)–(i + 1, j) and (i, j)–(i, j + 1); 0: none.
+  float restLengthU_m(int i, int j) const { return restLength1_[layout_.at(i, j)]; }
+  float restLengthV_m(int i, int j) const { return restLength2_[layout_.at(i, j)]; }
 
  private:
   void computeBound();

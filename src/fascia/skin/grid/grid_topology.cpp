@@ -1,8 +1,11 @@
 #include <fascia/skin/grid/grid_topology.h>
 
+#include <cmath>
+
 #include <fascia/base/assert.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/grid_stepper.h>
+#include <fascia/skin/grid/grid_stretch_limit.h>
 
 namespace fascia {
 namespace {
@@ -63,6 +66,10 @@ void GridTopology::addForceJacobian(const VectorArray& position,
                                     std::vector<Eigen::Triplet<double>>& entries) const {
   elastic_.addForceJacobian(position, false, entries);
   if (bending_.active()) bending_.addForceJacobian(position, entries);
+}
+
+StretchLimit GridTopology::makeStretchLimit() const {
+  return StretchLimit(gridStretchLimits(elastic_, std::sqrt(1 + elastic_.coefficients().cap)));
 }
 
 void GridTopology::surface(const VectorArray& position, TriangleMesh& mesh) const {

@@ -27,6 +27,7 @@ class GridTopology final : public SkinTopology {
   double maxStretch(const VectorArray& position) const override {
     return elastic_.maxStretch(position);
   }
+  StretchLimit makeStretchLimit() const override;
   void surface(const VectorArray& position, TriangleMesh& mesh) const override;
 
  private:

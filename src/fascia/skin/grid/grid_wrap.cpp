@@ -115,7 +115,7 @@ void setEndWays(const GridWrap& wrap, const FollowInput& input, VectorArray& way
 }
 
 // Points of a row to a distance of the fat from every solid.
-void pushRowOut(const Field& field, float fat_m, const Vectors& row) {
+void pushRowOut(const DistanceField& field, float fat_m, const Vectors& row) {
   VectorArray normal(row.count);
   FloatArray distance(row.count);
   bool moved = true;
@@ -136,7 +136,7 @@ void pushRowOut(const Field& field, float fat_m, const Vectors& row) {
   }
 }
 
-void pushOut(const GridLayout& g, const Field& field, double fat_m, VectorArray& r) {
+void pushOut(const GridLayout& g, const DistanceField& field, double fat_m, VectorArray& r) {
   parallelFor(static_cast<std::size_t>(g.rows - 2), [&](std::size_t row) {
     pushRowOut(field, static_cast<float>(fat_m),
                view(r, g.row(static_cast<int>(row) + 1), static_cast<std::size_t>(g.columns)));

@@ -15,9 +15,12 @@ constexpr float kSlackOfGap = 0.15f;
 
 }  // namespace
 
-NearestSolids::NearestSolids(const Field& field, double reach_m)
+NearestSolids::NearestSolids(const DistanceField& field, double reach_m)
     : field_(field), least_m_(static_cast<float>(reach_m)), closest_m_(field.solidCount()) {
   candidates_.reserve(field.solidCount());
+  for (std::size_t s = 0; s < field.solidCount(); ++s)
+    steepest_ = std::max(
+        steepest_, static_cast<float>(field.lipschitz(SolidId(static_cast<std::int64_t>(s)))));
 }
 
 void NearestSolids::measure(ConstVectors points) {
@@ -59,10 +62,11 @@ void NearestSolids::findCandidates(ConstVectors points) {
   float farthest = 0;
   for (std::size_t i = 0; i < points.count; ++i) farthest = std::max(farthest, distance_[i]);
   slack_m_ = std::max(least_m_, kSlackOfGap * farthest);
-  // Until then no point goes farther from its nearest solid, nor nearer to others, than the slack.
+  // Until then no point goes farther from its nearest solid, nor nearer to others, than the slack,
+  // and their distances change by no more than so many times that.
   candidates_.clear();
   for (std::size_t s = 0; s < closest_m_.size(); ++s)
-    if (!(kTrust * closest_m_[s] > farthest + 2 * slack_m_))
+    if (!(kTrust * closest_m_[s] > farthest + 2 * steepest_ * slack_m_))
       candidates_.emplace_back(static_cast<std::int64_t>(s));
   count_ = points.count;
   std::copy_n(points.x, points.count, known_[0].data());

@@ -17,7 +17,7 @@ class NearestSolids {
 
   // `field` must stay as it is. `reach_m`: how far the points may go, at least, until all solids
   // are asked again. It changes the cost and not the result; a hundredth of the field is good.
-  NearestSolids(const Field& field, double reach_m);
+  NearestSolids(const DistanceField& field, double reach_m);
 
   // Allocates nothing. The first of several solids at the same distance counts.
   void measure(ConstVectors points);
@@ -37,8 +37,9 @@ class NearestSolids {
   void findCandidates(ConstVectors points);
   void offer(SolidId solid, ConstVectors points);
 
-  const Field& field_;
-  float least_m_, slack_m_ = -1;  // how far points may go from known_; negative: anew
+  const DistanceField& field_;
+  float least_m_, steepest_ = 1;  // L of the steepest solid
+  float slack_m_ = -1;            // how far points may go from known_; negative: anew
   std::size_t count_ = 0;
   Rows known_{};
   std::vector<SolidId> candidates_;  // ascending

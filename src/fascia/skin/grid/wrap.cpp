@@ -34,7 +34,7 @@ struct WrapBlock {
   NearestSolids flesh;
 };
 
-Box boundsOf(const Field& field) {
+Box boundsOf(const DistanceField& field) {
   Box box;
   for (std::size_t s = 0; s < field.solidCount(); ++s)
     box.add(field.bounds(SolidId(std::int64_t(s))));
@@ -42,7 +42,7 @@ Box boundsOf(const Field& field) {
 }
 
 // Of the rows between the ends.
-std::vector<WrapBlock> blocksOf(const Field& field, const GridLayout& g) {
+std::vector<WrapBlock> blocksOf(const DistanceField& field, const GridLayout& g) {
   const double reach_m = kReachOfField * boundsOf(field).size().norm();
   std::vector<WrapBlock> blocks;
   const auto columns = static_cast<std::size_t>(g.columns);
@@ -121,7 +121,7 @@ double clingRate(const GridLayout& g, const WrapOptions& options) {
          std::min(1.0, kReferencePoints / static_cast<double>(g.pointCount()));
 }
 
-VectorArray sphereAround(const Field& field, const GridLayout& g, const Vec3& upAxis) {
+VectorArray sphereAround(const DistanceField& field, const GridLayout& g, const Vec3& upAxis) {
   const Box box = boundsOf(field);
   const double radius = 0.55 * box.size().norm();
   const Vec3 front = towardsFront(upAxis), side = upAxis.cross(front);
@@ -148,7 +148,8 @@ Vec3 ringPoint(const EndRing& ring, const Vec3& upAxis, double u) {
   return ring.center_m + ring.radius_m * (-std::cos(a) * front - std::sin(a) * side);
 }
 
-Vec3 exitPoint(const Field& field, const Vec3& origin, const Vec3& axis, double clearance_m) {
+Vec3 exitPoint(const DistanceField& field, const Vec3& origin, const Vec3& axis,
+               double clearance_m) {
   Box box = boundsOf(field);
   box.add(origin);
   const double reach = box.size().norm();
@@ -181,7 +182,7 @@ Vec3 exitPoint(const Field& field, const Vec3& origin, const Vec3& axis, double 
   return origin + high * axis;
 }
 
-VectorArray shrinkWrap(const Field& field, const GridLayout& layout, const EndRing& bottom,
+VectorArray shrinkWrap(const DistanceField& field, const GridLayout& layout, const EndRing& bottom,
                        const EndRing& top, const WrapOptions& options) {
   Vec3 upAxis = top.center_m - bottom.center_m;
   upAxis = upAxis.norm() > 1e-9 ? Vec3(upAxis.normalized()) : Vec3(Vec3::UnitY());

@@ -21,14 +21,15 @@ struct WrapOptions {
 };
 
 // Where the ray from `origin` along `axis` leaves the flesh for the last time, plus `clearance_m`.
-Vec3 exitPoint(const Field& field, const Vec3& origin, const Vec3& axis, double clearance_m);
+Vec3 exitPoint(const DistanceField& field, const Vec3& origin, const Vec3& axis,
+               double clearance_m);
 
 // Shrink-wrap (Turner & Gobbetti 1998, §6.2): a sphere around the flesh whose two end rows are the
 // rings contracts under tension until it rests on the flesh. Coarse to fine, so that the cost is
 // linear in points. Columns run right-handed around the tube's axis (bottom → top) seen from
 // outside, starting at the back (−z), so that u = ½ is the front. Returns positions in storage
 // order, pads filled.
-VectorArray shrinkWrap(const Field& field, const GridLayout& layout, const EndRing& bottom,
+VectorArray shrinkWrap(const DistanceField& field, const GridLayout& layout, const EndRing& bottom,
                        const EndRing& top, const WrapOptions& options);
 
 // Points of a ring, `columns` of them, as the end rows of shrinkWrap.

@@ -1,5 +1,7 @@
 #include <fascia/skin/mesh/mesh_topology.h>
 
+#include <cmath>
+
 #include <fascia/skin/mesh/mesh_kernels.h>
 
 namespace fascia {
@@ -33,6 +35,11 @@ std::unique_ptr<SurfaceStepper> MeshTopology::makeStepper() const {
 void MeshTopology::addForceJacobian(const VectorArray& position,
                                     std::vector<Eigen::Triplet<double>>& entries) const {
   membrane_.addForceJacobian(position, false, entries);
+}
+
+// One level: meshes have no rows to take every second of.
+StretchLimit MeshTopology::makeStretchLimit() const {
+  return StretchLimit({{membrane_.edges(std::sqrt(1 + membrane_.cap())), {}}});
 }
 
 void MeshTopology::surface(const VectorArray& position, TriangleMesh& mesh) const {

@@ -34,6 +34,7 @@ class MeshTopology final : public SkinTopology {
   double maxStretch(const VectorArray& position) const override {
     return membrane_.maxStretch(position);
   }
+  StretchLimit makeStretchLimit() const override;
   void surface(const VectorArray& position, TriangleMesh& mesh) const override;
 
  private:

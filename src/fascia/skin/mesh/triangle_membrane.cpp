@@ -172,6 +172,23 @@ double TriangleMembrane::maxStretch(const VectorArray& r) const {
   return std::sqrt(double{largest});
 }
 
+std::vector<StretchLimit::Edge> TriangleMembrane::edges(float stretch) const {
+  std::vector<StretchLimit::Edge> edges;
+  for (const Triangle& t : triangles_) {
+    const auto add = [&](std::uint32_t a, std::uint32_t b, float inverseRest) {
+      edges.push_back({std::min(a, b), std::max(a, b), stretch / std::sqrt(inverseRest)});
+    };
+    add(t.corners[0], t.corners[1], t.inverseRest[0]);
+    add(t.corners[0], t.corners[2], t.inverseRest[1]);
+    add(t.corners[1], t.corners[2], t.inverseRest[2]);
+  }
+  const auto ends = [](const StretchLimit::Edge& e) { return std::pair(e.a, e.b); };
+  std::ranges::stable_sort(edges, {}, ends);
+  const auto rest = std::ranges::unique(edges, {}, ends);
+  edges.erase(rest.begin(), rest.end());
+  return edges;
+}
+
 void TriangleMembrane::addForceJacobian(const VectorArray& r, bool definite,
                                         std::vector<Eigen::Triplet<double>>& entries) const {
   for (const Triangle& t : triangles_) {

@@ -10,6 +10,7 @@
 #include <fascia/base/aligned.h>
 #include <fascia/math/types.h>
 #include <fascia/skin/mesh/hinge_bending.h>
+#include <fascia/skin/point/stretch_limit.h>
 
 namespace fascia {
 
@@ -55,6 +56,8 @@ class TriangleMembrane {
   const FloatArray& stiffnessBound() const { return bound_; }
   double maxStretch(const VectorArray& position) const;    // edge length over rest length
   const FloatArray& pointAreas() const { return areas_; }  // rest area of each point, m²
+  // Each edge once, and how long it is stretched so many times.
+  std::vector<StretchLimit::Edge> edges(float stretch) const;
 
   struct Triangle {
     Corners corners;

@@ -25,6 +25,8 @@ struct PointSurroundings {
   // A half space per point that the flesh fills: n·r < offset is inside. n = 0: nothing near.
   VectorArray normal, fleshVelocity;
   FloatArray offset;  // at the interval's start; it moves with n·fleshVelocity
+  // The flesh's own n, also where other skin has taken the half space. Empty without self-contact.
+  VectorArray fleshNormal;
 
   void resize(std::size_t n) {
     for (VectorArray* a : {&anchor, &anchorVelocity, &normal, &fleshVelocity}) a->resize(n);

@@ -9,6 +9,7 @@
 #include <fascia/base/aligned.h>
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/skin/point/step_inputs.h>
+#include <fascia/skin/point/stretch_limit.h>
 
 namespace fascia {
 
@@ -44,6 +45,8 @@ class SkinTopology {
   virtual void addForceJacobian(const VectorArray& position,
                                 std::vector<Eigen::Triplet<double>>& entries) const = 0;
   virtual double maxStretch(const VectorArray& position) const = 0;  // edge over rest length
+  // What keeps edges within max_stretch of the material.
+  virtual StretchLimit makeStretchLimit() const = 0;
   // The surface for display and export; see skinSurface().
   virtual void surface(const VectorArray& position, TriangleMesh& mesh) const = 0;
 };

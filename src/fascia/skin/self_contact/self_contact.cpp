@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
 
@@ -25,6 +26,8 @@ constexpr float kMostWay = 0.25f;
 // it, beyond what it does at rest. More, and triangles turn over and find contacts of their own:
 // dense skin melts.
 constexpr float kMostRough = 0.35f;
+// Cosine of a contact's normal and the flesh's from which on it pushes off the flesh.
+constexpr float kMostOutward = 0.2f;
 // Within this share of the gap sheets touch: approaching is over.
 constexpr float kTouching = 0.05f;
 // By how many gaps another sheet must be more urgent than the flesh to take its half space: less
@@ -78,8 +81,10 @@ SelfContact::SelfContact(const SelfContactModel& model)
 
 SelfContact::Result SelfContact::separate(const PointModel& points, float reach_m,
                                           VectorArray& position, VectorArray& velocity,
-                                          float interval_s) {
-  find(points, reach_m, position, velocity, interval_s);
+                                          float interval_s, const VectorArray& fleshNormal) {
+  FASCIA_ASSERT(fleshNormal.x.empty() || fleshNormal.size() == position.size(),
+                "a normal for each point");
+  find({points, reach_m, position, velocity, interval_s, fleshNormal});
   shareOut(points);
   const Result result = limitWays(position);
   if (result.contacts > 0) {
@@ -93,14 +98,12 @@ SelfContact::Result SelfContact::separate(const PointModel& points, float reach_
   return result;
 }
 
-void SelfContact::find(const PointModel& points, float reach_m, const VectorArray& position,
-                       const VectorArray& velocity, float interval_s) {
-  search_.update(position, velocity, interval_s);
+void SelfContact::find(const Inputs& in) {
+  search_.update(in.position, in.velocity, in.interval_s);
   const std::size_t patches = model_->patches.size();
   parallelFor((patches + kPatchesPerTask - 1) / kPatchesPerTask, [&](std::size_t task) {
     const std::size_t end = std::min(patches, (task + 1) * kPatchesPerTask);
-    for (std::size_t p = task * kPatchesPerTask; p < end; ++p)
-      findOfPatch(p, points, reach_m, position, velocity, interval_s);
+    for (std::size_t p = task * kPatchesPerTask; p < end; ++p) findOfPatch(p, in);
   });
   contacts_.clear();
   for (std::size_t p = 0; p < patches; ++p) {
@@ -111,9 +114,7 @@ void SelfContact::find(const PointModel& points, float reach_m, const VectorArra
 }
 
 // The nearest contact of each of a patch's points.
-void SelfContact::findOfPatch(std::size_t patch, const PointModel& points, float reach_m,
-                              const VectorArray& position, const VectorArray& velocity,
-                              float interval_s) {
+void SelfContact::findOfPatch(std::size_t patch, const Inputs& in) {
   struct Best {
     std::uint32_t group;
     Touch touch;
@@ -131,13 +132,13 @@ void SelfContact::findOfPatch(std::size_t patch, const PointModel& points, float
     best[lane] = {group, touch};
     lanes.nearest_m[lane] = touch.nearest_m;
   };
-  search_.search(patch, {model_->gap_m + reach_m, 1, position, velocity}, lanes,
+  search_.search(patch, {model_->gap_m + in.reach_m, 1, in.position, in.velocity}, lanes,
                  std::cref(consider));
   std::uint32_t& count = foundCounts_[patch] = 0;
   for (; any != 0; any &= any - 1) {
     const auto& [group, touch] = best[static_cast<std::size_t>(std::countr_zero(any))];
     const auto point = static_cast<std::uint32_t>(model_->patches[patch].points[touch.lane]);
-    if (points.free[point] == 0) continue;
+    if (in.points.free[point] == 0) continue;
     const Contact contact{point,
                           model_->triangle(touch.triangle),
                           touch.weights(),
@@ -147,10 +148,17 @@ void SelfContact::findOfPatch(std::size_t patch, const PointModel& points, float
                           1,
                           0,
                           Eigen::Vector3f::Zero()};
-    const float approach_m = -interval_s * contact.approach(velocity);
-    if (touch.distance_m - contact.keep_m > reach_m + std::max(0.f, approach_m)) continue;
+    if (leavesFlesh(contact, in.fleshNormal)) continue;
+    const float approach_m = -in.interval_s * contact.approach(in.velocity);
+    if (touch.distance_m - contact.keep_m > in.reach_m + std::max(0.f, approach_m)) continue;
     found_[patch * SelfContactModel::Patch::kCapacity + count++] = contact;
   }
+}
+
+bool SelfContact::leavesFlesh(const Contact& c, const VectorArray& fleshNormal) {
+  if (fleshNormal.x.empty()) return false;
+  return c.normal.dot(floatPointAt(fleshNormal, c.point)) > kMostOutward ||
+         c.normal.dot(blend(fleshNormal, c.corners, c.weights)) < -kMostOutward;
 }
 
 // How two sides share the way apart: by their mobility, as two sheets of skin do that collide,

@@ -25,9 +25,13 @@ class SelfContact {
     float deepest_m = 0;         // by how much, at most
   };
   // reach_m: how much farther than its velocity says a point may come in the coming interval.
-  // Points without any contact keep every bit.
+  // Points without any contact keep every bit. fleshNormal: outward from the flesh that a point
+  // lies on, or 0; empty: nothing is known. A contact that would push a point off its flesh, or
+  // whose triangle looks into its own, is none: skin that is crumpled in a crease has lost its
+  // sides, and would work its way out of it.
   Result separate(const PointModel& points, float reach_m, VectorArray& position,
-                  VectorArray& velocity, float interval_s = 1.f / 60);
+                  VectorArray& velocity, float interval_s = 1.f / 60,
+                  const VectorArray& fleshNormal = {});
   // After `separate` and FleshContact::project: half spaces of contacts that are more urgent than
   // the flesh's in `around` replace those.
   void writeHalfSpaces(const VectorArray& position, const VectorArray& velocity, float interval_s,
@@ -49,10 +53,17 @@ class SelfContact {
     float distance(const VectorArray& position) const;
     float approach(const VectorArray& velocity) const;  // negative: coming nearer
   };
-  void find(const PointModel& points, float reach_m, const VectorArray& position,
-            const VectorArray& velocity, float interval_s);
-  void findOfPatch(std::size_t patch, const PointModel& points, float reach_m,
-                   const VectorArray& position, const VectorArray& velocity, float interval_s);
+  // What a search goes by.
+  struct Inputs {
+    const PointModel& points;
+    float reach_m;
+    const VectorArray &position, &velocity;
+    float interval_s;
+    const VectorArray& fleshNormal;
+  };
+  void find(const Inputs& in);
+  void findOfPatch(std::size_t patch, const Inputs& in);
+  static bool leavesFlesh(const Contact& contact, const VectorArray& fleshNormal);
   void shareOut(const PointModel& points);
   Result limitWays(const VectorArray& position);
   void moveApart(const PointModel& points, VectorArray& position);
