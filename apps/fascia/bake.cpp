@@ -10,6 +10,7 @@
 #include <fascia/io/documents/scene_file.h>
 #include <fascia/io/documents/stats_writer.h>
 #include <fascia/io/glb_export/gltf_writer.h>
+#include <fascia/io/rig_export/rig_writer.h>
 
 #include "commands.h"
 #include "example_files.h"
@@ -27,6 +28,7 @@ namespace {
 
 constexpr const char* kBakeFooter = R"(Formats, by the ending of the file to write:
   .glb     glTF: skin, texture, skeleton, animation; plays in any viewer
+  .vrm     the same, for a character that came from a .vrm: stays an avatar
   .pc2     point cache for Blender, Maya, Houdini
   .mdd     point cache for those and Cinema 4D
   .fcache  everything, exactly; 'fascia render' draws it without simulating again
@@ -71,7 +73,7 @@ struct Made {
 
 // One file for all motions: what only a .glb with a skeleton can be, and not as a cache.
 bool holdsAll(const Cast& cast, const RigBakeOptions& options, const std::string& path) {
-  if (endingOf(path) != ".glb") return false;
+  if (!isGlb(path)) return false;
   return cast.def.rig ? options.as != "cache" : isSmallGridBake(cast.character, options);
 }
 
@@ -96,7 +98,7 @@ void writeGrid(const Cast& cast, std::span<const Shot> shots, const std::string&
 void writeMotion(const Cast& cast, const Shot& shot, const std::string& path,
                  const BakeOptions& options, const Console& console, Made& made) {
   const std::string ending = endingOf(path);
-  if (ending == ".glb" && cast.def.rig) {
+  if (isGlb(path) && cast.def.rig) {
     writeRig(cast, {&shot, 1}, path, options, console, made);
     return;
   }
@@ -119,6 +121,18 @@ void writeOutput(const Cast& cast, const std::vector<Shot>& shots, const std::st
   }
   for (std::size_t i = before; i < made.written.size(); ++i)
     console.say("wrote " + made.written[i]);
+}
+
+// Throws Error if a .vrm is to be written of what is none; nullptr: not of a rig's file.
+void checkVrm(const RiggedModel* rig, const std::vector<std::string>& outputs) {
+  for (const std::string& output : outputs) {
+    if (endingOf(output) != ".vrm" || (rig && isVrm(*rig))) continue;
+    Issue issue;
+    issue.where.file = output;
+    issue.message = "would be no avatar: a .vrm is written of characters that came from one";
+    issue.hint = "name it .glb";
+    throw Error(std::move(issue));
+  }
 }
 
 // Throws Error before any long work if a file would be overwritten.
@@ -152,6 +166,8 @@ std::vector<Shot> shootAll(const Cast& cast, const BakeOptions& options, const C
 void bakeCharacter(BakeOptions& options, const Console& console) {
   const Cast cast = prepareCast(options.file, options.takes, options.simulation, console);
   checkRigBake(cast.character, options.rig, options.outputs);
+  checkVrm(cast.def.rig && options.rig.as != "cache" ? cast.def.rig->model.get() : nullptr,
+           options.outputs);
   checkFiles(cast, options);
   const std::vector<Shot> shots = shootAll(cast, options, console);
   Made made;
@@ -180,6 +196,7 @@ void bakeFile(BakeOptions& options, const Console& console) {
     bakeCharacter(options, console);
     return;
   }
+  checkVrm(nullptr, options.outputs);
   if (!options.rig.given().empty()) throw Error("--as and its options are for characters on a rig");
   if (!options.takes.motions.empty() || !options.takes.all.empty() || !options.takes.loop.empty())
     throw Error("--motion, --motions and --loop are for characters; a scene has its own");
@@ -209,7 +226,7 @@ void addBake(CLI::App& program, Console& console) {
       ->required()
       ->type_name("FILE")
       ->allow_extra_args(false)
-      ->check(endsIn({".glb", ".pc2", ".mdd", ".fcache"}));
+      ->check(endsIn({".glb", ".pc2", ".mdd", ".fcache", ".vrm"}));
   command.add_option("--stats", options->stats, "Write how the simulation went to this JSON file")
       ->type_name("FILE");
   command

@@ -67,11 +67,11 @@ void addSubjectOptions(CLI::App& command, CompareOptions& options) {
   SimulationOptions& simulation = options.simulation;
   command
       .add_option("--motion", simulation.motion,
-                  "Motion to show (default: the first); a .bvh file is put onto the rig")
+                  "Motion to show (default: the first); a .bvh or .glb file is put onto the rig")
       ->type_name("NAME");
   command
       .add_option("--joint-map", simulation.joint_map,
-                  "Which of the .bvh file's joints drive which of the rig's (default: guessed)")
+                  "Which of that file's joints drive which of the rig's (default: guessed)")
       ->type_name("FILE");
   command.add_option("--seconds", simulation.duration_s, "So much of the motion (default: all)")
       ->type_name("SECONDS")

@@ -37,6 +37,7 @@ class Console {
   // closed pipe does.
   bool delivered() const;
 
+  bool isVerbose() const { return verbose_; }
   // Whether to tell how far the work is: someone wants text.
   bool showsProgress() const;
 

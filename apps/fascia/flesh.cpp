@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <fascia/base/parallel.h>
+#include <fascia/base/suggest.h>
 #include <fascia/character/flesh_character.h>
 #include <fascia/io/documents/character_file.h>
 #include <fascia/io/file/file.h>
@@ -58,7 +61,7 @@ std::string nameOf(const fs::path& output) {
 // The rig's path from the output's folder, if a character file there can name it.
 std::optional<std::string> pathBelow(const fs::path& rig, const fs::path& folder) {
   const std::string ending = endingOf(rig.string());
-  if (ending != ".glb" && ending != ".gltf") return std::nullopt;
+  if (ending != ".glb" && ending != ".gltf" && ending != ".vrm") return std::nullopt;
   std::error_code fault;
   const fs::path real = fs::canonical(rig, fault), base = fs::canonical(folder, fault);
   if (fault) return std::nullopt;
@@ -96,21 +99,73 @@ void refuseToOverwrite(const std::string& path, bool force) {
   throw Error(std::move(issue));
 }
 
+void sayJoint(const JointFit& joint, const Console& console) {
+  if (joint.solids.empty()) {
+    console.say(fmt::format("{:28} {:6} {:>6}   {}", joint.joint, joint.points, "-", joint.why));
+    return;
+  }
+  console.say(fmt::format("{:28} {:6} {:6} {:7.0f} % {:6.1f} mm {:6.2f} mm", joint.joint,
+                          joint.points, joint.solids.size(), 100 * joint.coverage,
+                          1000 * joint.residual_rms_m, 1000 * joint.deepest_outside_m));
+}
+
+// How many of its points have no flesh beneath, about.
+double bareOf(const JointFit& joint) {
+  return static_cast<double>(joint.points) * (1 - joint.coverage);
+}
+
+// The joints with the most bare skin, in their order.
+std::vector<const JointFit*> worstOf(const FleshFit& fit) {
+  constexpr std::size_t kMostTold = 3;
+  constexpr double kLeastBare = 0.05;  // of a joint's skin, to be told
+  std::vector<const JointFit*> worst;
+  for (const JointFit& joint : fit.joints)
+    if (joint.points > 0 && 1 - joint.coverage > kLeastBare) worst.push_back(&joint);
+  std::ranges::stable_sort(worst, std::greater{}, [](const JointFit* j) { return bareOf(*j); });
+  worst.resize(std::min(worst.size(), kMostTold));
+  std::ranges::sort(worst);
+  return worst;
+}
+
+// The three worst places, or all with --verbose, and the whole.
 void sayTable(const FleshFit& fit, const Console& console) {
   console.say(fmt::format("{:28} {:>6} {:>6} {:>9} {:>9} {:>9}", "joint", "points", "solids",
                           "coverage", "residual", "outside"));
-  for (const JointFit& joint : fit.joints) {
-    if (joint.solids.empty()) {
-      console.say(fmt::format("{:28} {:6} {:>6}   {}", joint.joint, joint.points, "-", joint.why));
-      continue;
-    }
-    console.say(fmt::format("{:28} {:6} {:6} {:7.0f} % {:6.1f} mm {:6.2f} mm", joint.joint,
-                            joint.points, joint.solids.size(), 100 * joint.coverage,
-                            1000 * joint.residual_rms_m, 1000 * joint.deepest_outside_m));
+  if (console.isVerbose()) {
+    for (const JointFit& joint : fit.joints) sayJoint(joint, console);
+  } else {
+    for (const JointFit* joint : worstOf(fit)) sayJoint(*joint, console);
   }
-  console.say(fmt::format("{:28} {:6} {:6} {:7.0f} % {:6.1f} mm {:6.2f} mm", "all", "",
+  std::size_t points = 0;
+  for (const JointFit& joint : fit.joints) points += joint.points;
+  console.say(fmt::format("{:28} {:6} {:6} {:7.0f} % {:6.1f} mm {:6.2f} mm",
+                          fmt::format("all {} joints", fit.joints.size()), points,
                           fit.flesh.solids.size(), 100 * fit.coverage, 1000 * fit.residual_rms_m,
                           1000 * fit.deepest_outside_m));
+}
+
+// Half a body without flesh is no success.
+void warnOfBareBody(const FleshFit& fit, const std::string& input, const Console& console) {
+  constexpr double kMostBare = 0.5;
+  double points = 0, bare = 0;
+  const JointFit* worst = nullptr;
+  for (const JointFit& joint : fit.joints) {
+    points += static_cast<double>(joint.points);
+    if (!joint.solids.empty()) continue;
+    bare += static_cast<double>(joint.points);
+    if (!worst || joint.points > worst->points) worst = &joint;
+  }
+  const double share = std::max(bare / std::max(points, 1.0), 1 - fit.coverage);
+  if (share < kMostBare) return;
+  Issue issue;
+  issue.where.file = input;
+  issue.message = fmt::format("{:.0f} % of the body gets no flesh", 100 * share);
+  if (worst && !worst->why.empty())
+    issue.message += fmt::format("; at {}: {}", quotedName(worst->joint), worst->why);
+  issue.hint =
+      "are there walls of clothes without a body in them? A closed body is filled; -v shows "
+      "every joint";
+  console.warn({issue});
 }
 
 Json reportJson(const RiggedModel& model, const FleshFit& fit) {
@@ -154,6 +209,7 @@ void flesh(const FleshOptions& options, const Console& console) {
   const RiggedModel& model = *shared;
   const FleshFit& fit = made.fit;
   sayTable(fit, console);
+  warnOfBareBody(fit, options.input, console);
   for (const auto& notes : {model.notes, fit.notes}) {
     for (const std::string& note : notes) console.say("note: " + note);
   }
@@ -218,6 +274,7 @@ void addFlesh(CLI::App& program, Console& console) {
       ->check(numberIn(0, 1024));
   command.add_flag("--force", options->force, "Overwrite files");
   console.addFlags(command);
+  console.addVerboseFlag(command);
   command.footer(kFleshFooter);
   command.callback([options, &console] { flesh(*options, console); });
 }

@@ -221,9 +221,9 @@ void addInfo(CLI::App& program, Console& console) {
   file->transform(exampleFiles())->type_name("");
   command
       .add_option("--motion", options->motion,
-                  "Show how this .bvh file's joints would drive the rig's")
+                  "Show how the joints of this .bvh, .glb or .fbx file would drive the rig's")
       ->type_name("FILE")
-      ->check(endsIn({".bvh", ".gz"}))
+      ->check(endsIn({".bvh", ".gz", ".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".dae"}))
       ->needs(file);
   command
       .add_option("--joint-map", options->joint_map, "Pairs of joints that win over the guesses")

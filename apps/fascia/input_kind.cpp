@@ -67,8 +67,8 @@ InputKind kindByEnding(const std::string& path) {
   };
   static const std::vector<Known> kKnown = {
       {InputKind::model,
-       {".glb", ".gltf", ".vrm", ".fbx", ".dae", ".obj", ".blend", ".x", ".ms3d", ".smd", ".ply",
-        ".stl", ".3ds", ".usd", ".usdz", ".mhskel"}},
+       {".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".dae", ".obj", ".blend", ".x", ".ms3d", ".smd",
+        ".ply", ".stl", ".3ds", ".usd", ".usdz", ".mhskel"}},
       {InputKind::motion, {".bvh"}},
       {InputKind::recording, {".fcache"}},
       {InputKind::pointCache, {".pc2", ".mdd"}},
@@ -267,11 +267,11 @@ void withInput(const std::string& path, const Wanted& wanted, const std::functio
 
 void refuseMotionFile(const std::string& motion) {
   const InputKind kind = kindByEnding(motion);
-  const bool motionOnly = endingOf(motion) == ".vrma" || endingOf(motion) == ".amc";
+  const bool motionOnly = endingOf(motion) == ".amc";
   if (kind == InputKind::unknown && !motionOnly) return;
   Issue issue;
   issue.message = "the motion " + quotedName(motion) +
-                  " looks like a file, and motions are read from .bvh files only";
+                  " looks like a file, and motions are read from .bvh, .glb, .vrma and .fbx";
   issue.hint = "export it as .bvh, or give the name of one of the character's own motions";
   throw Error(std::move(issue));
 }

@@ -23,6 +23,10 @@ std::string endingOf(const std::string& path) {
   return ending;
 }
 
+bool isGlb(const std::string& path) {
+  return endingOf(path) == ".glb" || endingOf(path) == ".vrm";
+}
+
 std::function<std::string(const std::string&)> endsIn(const std::vector<std::string>& endings) {
   return [endings](const std::string& path) -> std::string {
     if (std::find(endings.begin(), endings.end(), endingOf(path)) != endings.end()) return {};

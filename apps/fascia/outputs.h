@@ -12,6 +12,7 @@
 namespace fascia {
 
 std::string endingOf(const std::string& path);  // ".glb", in lower case
+bool isGlb(const std::string& path);            // .glb, or .vrm, which is one with extensions
 
 // For CLI11: accepts paths with one of these endings.
 std::function<std::string(const std::string&)> endsIn(const std::vector<std::string>& endings);

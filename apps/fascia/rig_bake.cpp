@@ -103,13 +103,19 @@ void RigBakeOptions::addTo(CLI::App& command) {
           "Most targets that --as morphs makes (default: 16; of a grid: as the error asks for)")
       ->type_name("N")
       ->check(numberIn(1, 256));
+  command
+      .add_option("--spring-bones", springs,
+                  "Swinging chains of a VRM: keep, or replace those that the bake moves already "
+                  "(default: keep)")
+      ->type_name("HOW")
+      ->check(CLI::IsMember({"keep", "replace"}).description(""));
 }
 
 std::vector<RigBakeOptions::Given> RigBakeOptions::given() const {
   std::vector<Given> all;
   for (const Given& g :
        {Given{"--as", ""}, Given{"--helpers", "bones"}, Given{"--tolerance", "bones"},
-        Given{"--influences", "bones"}, Given{"--targets", "morphs"}})
+        Given{"--influences", "bones"}, Given{"--targets", "morphs"}, Given{"--spring-bones", ""}})
     if (command_ && command_->count(g.option) > 0) all.push_back(g);
   return all;
 }
@@ -118,8 +124,7 @@ void checkRigBake(const Character& character, const RigBakeOptions& options,
                   const std::vector<std::string>& outputs) {
   const std::string usual = character.def().rig ? "bones" : "morphs";
   const std::string way = options.as.empty() ? usual : options.as;
-  const bool anyGlb = std::any_of(outputs.begin(), outputs.end(),
-                                  [](const std::string& path) { return endingOf(path) == ".glb"; });
+  const bool anyGlb = std::any_of(outputs.begin(), outputs.end(), isGlb);
   for (const RigBakeOptions::Given& g : options.given()) {
     Issue issue;
     if (!character.skin() && !character.def().rig)
@@ -137,7 +142,7 @@ void checkRigBake(const Character& character, const RigBakeOptions& options,
 
 std::vector<std::string> filesOf(const Character& character, const RigBakeOptions& options,
                                  const std::string& output) {
-  if (!character.def().rig || options.as != "cache" || endingOf(output) != ".glb") return {output};
+  if (!character.def().rig || options.as != "cache" || !isGlb(output)) return {output};
   return filesOfRigCache(*character.def().rig->model, output);
 }
 
@@ -149,11 +154,12 @@ RigBakeReport writeRigBake(const CharacterDef& def, std::span<const Shot> shots,
   for (const Shot& shot : shots)
     clips.push_back(
         {*rig.model, shot.recording, shot.joints_world, shot.recording.motion, rig.scale});
+  const RigFileOptions file{.replaceSprings = options.springs == "replace"};
   if (options.as == "cache") return writeRigAsCache(clips.front(), path);
   if (options.as == "morphs") {
     ProgressBar progress(console, "fitting morph targets");
     progress.update(0);  // how long it takes is not known
-    return writeRigAsMorphs(clips, MorphOptions{.targets = options.targets}, path);
+    return writeRigAsMorphs(clips, MorphOptions{.targets = options.targets}, path, file);
   }
   ProgressBar progress(console, "fitting bones");
   DecompositionOptions fit;
@@ -162,7 +168,7 @@ RigBakeReport writeRigBake(const CharacterDef& def, std::span<const Shot> shots,
   fit.tolerance_m = kMargin * 0.01 * options.tolerance_percent * rig.model->height_m();
   fit.mostHelpers = std::max(options.helpers, kMostHelpers);
   fit.progress = [&](double share) { progress.update(share); };
-  return writeRigAsBones(clips, fit, path);
+  return writeRigAsBones(clips, fit, path, file);
 }
 
 Json describe(const RigBakeReport& report, const RigBakeOptions& options, const RiggedModel& rig,
@@ -179,6 +185,11 @@ Json describe(const RigBakeReport& report, const RigBakeOptions& options, const 
                               percentOf(m.error.rms_mm, rig), percentOf(m.error.max_mm, rig)));
   if (options.as.empty() || options.as == "bones") sayHelpers(report, options, rig, console);
   if (options.as != "cache") sayOthers(report, rig, console);
+  Json::List notes;
+  for (const std::string& note : report.notes) {
+    console.say("  note: " + note);
+    notes.emplace_back(note);
+  }
   return Json::Object{{"file", path},
                       {"added", static_cast<int>(report.added)},
                       {"plain", report.plain},
@@ -187,7 +198,8 @@ Json describe(const RigBakeReport& report, const RigBakeOptions& options, const 
                       {"rms_percent", percentOf(error.rms_mm, rig)},
                       {"max_percent", percentOf(error.max_mm, rig)},
                       {"baked", toJson(report.baked, rig)},
-                      {"others", toJson(report.others, rig)}};
+                      {"others", toJson(report.others, rig)},
+                      {"notes", std::move(notes)}};
 }
 
 }  // namespace fascia

@@ -24,6 +24,7 @@ struct RigBakeOptions {
   double tolerance_percent = 0.2;  // of the height, RMS; 0 = `helpers` and no more
   int influences = 4;
   int targets = 16;
+  std::string springs;  // keep or replace; empty = keep
 
   void addTo(CLI::App& command);
   // Those of the options above that were given, and the ways they belong to ("" = any).

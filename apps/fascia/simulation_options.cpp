@@ -31,15 +31,16 @@ std::string gridProblem(const std::string& text) {
 
 void SimulationOptions::addMotionTo(CLI::App& command) {
   command
-      .add_option("--motion", motion,
-                  "A character's motion (default: the first); a .bvh file is put onto the rig")
+      .add_option(
+          "--motion", motion,
+          "A character's motion (default: the first); a .bvh or .glb file is put onto the rig")
       ->type_name("NAME");
 }
 
 void SimulationOptions::addTo(CLI::App& command) {
   command
       .add_option("--joint-map", joint_map,
-                  "Which of the .bvh file's joints drive which of the rig's (default: guessed)")
+                  "Which of that file's joints drive which of the rig's (default: guessed)")
       ->type_name("FILE");
   command
       .add_option("--duration", duration_s,

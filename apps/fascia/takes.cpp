@@ -175,9 +175,10 @@ void closeEnds(const Cast& cast, const Take& take, Shot& shot) {
 void TakeOptions::addTo(CLI::App& command) {
   CLI::Option* one =
       command
-          .add_option("--motion", motions,
-                      "A motion (default: the first), may be given several times; a .bvh file is "
-                      "put onto the rig")
+          .add_option(
+              "--motion", motions,
+              "A motion (default: the first), may be given several times; a .bvh or .glb file is "
+              "put onto the rig")
           ->type_name("NAME")
           ->allow_extra_args(false);
   command.add_option("--motions", all, "'all': every motion of the character")

@@ -96,9 +96,17 @@ TEST_F(FirstMinutes, CharactersScenesAndRecordingsAreNotTakenForEachOther) {
   expectRefusal({"compare", scene, "-o", "a.png"}, "is a scene", "fascia render");
 }
 
-TEST_F(FirstMinutes, MotionsFromFilesAreBvh) {
-  for (const char* motion : {"walk.fbx", "walk.vrma", "walk.glb"})
+TEST_F(FirstMinutes, MotionsComeFromFilesThatMove) {
+  for (const char* motion : {"walk.obj", "walk.amc", "walk.png"})
     expectRefusal({"bake", "ball.fascia.json", "--motion", motion, "-o", "a.glb"}, motion, ".bvh");
+  for (const char* motion : {"walk.bvh", "walk.fbx", "walk.vrma", "walk.glb"})
+    expectRefusal({"bake", "ball.fascia.json", "--motion", motion, "-o", "a.glb"}, motion, "a rig");
+}
+
+TEST_F(FirstMinutes, OnlyAvatarsBecomeAvatars) {
+  expectRefusal({"bake", "ball.fascia.json", "-o", "a.vrm"}, "a.vrm", "name it .glb");
+  ASSERT_EQ(run({"flesh", "tube.gltf", "-o", "tube.fascia.json"}).exitCode, 0);
+  expectRefusal({"bake", "tube.fascia.json", "-o", "a.vrm"}, "a.vrm", "name it .glb");
 }
 
 TEST_F(FirstMinutes, FaultsOfRightFilesAreStillTold) {

@@ -33,7 +33,7 @@ TEST(Coverage, CountsTheSkinThatHasFleshBeneath) {
   fit.joints.resize(2);
   // Half a ball of flesh: the upper joint's skin lies over it, the lower one's mostly does not.
   const std::vector<FittedSolid> solids{sphere(Vec3(0, 0.3, 0), 0.15)};
-  measureFit(surface, solids, std::vector<std::size_t>{0}, fit);
+  measureFit(surface, solids, std::vector<std::size_t>{0}, WornPieces(2), fit);
   // Rays to the middle that pass the ball: within asin(0.15 / 0.3) = 30° of its direction.
   const double cap = 1 - std::cos(radians(30));
   EXPECT_NEAR(fit.joints[0].coverage, cap, 0.04);

@@ -78,6 +78,22 @@ const std::map<std::string, std::vector<std::string>>& conventions() {
        {"b_Hip_01", "b_Spine01_02", "b_Spine02_03", "b_Neck_04", "b_Head_05", "b_LeftShoulder_06",
         "b_LeftArm_09", "b_LeftForeArm_010", "b_LeftHand_011", "b_LeftUpLeg_015", "b_LeftLeg_016",
         "b_LeftFoot_017", "b_LeftToe_018", "b_RightArm_020", "b_RightUpLeg_021"}},
+      {"suffix",
+       {"HipsBone", "SpineBone", "ChestBone", "NeckBone", "HeadBone", "LeftShoulderBone",
+        "LeftUpperArmBone", "LeftLowerArmBone", "LeftHandBone", "LeftUpperLegBone",
+        "LeftLowerLegBone", "LeftFootBone", "LeftToesBone", "RightUpperArmBone",
+        "RightUpperLegBone"}},
+      {"joint and its number",
+       {"Skeleton_torso_joint_1", "Skeleton_torso_joint_2", "torso_joint_3", "neck_joint_1",
+        "neck_joint_2", "arm_joint_L_1", "arm_joint_L_2", "arm_joint_L_3", "arm_joint_L_4",
+        "leg_joint_L_1", "leg_joint_L_2", "leg_joint_L_3", "leg_joint_L_4", "arm_joint_R_1",
+        "leg_joint_R_1"}},
+      {"MikuMikuDance",
+       {"下半身", "上半身", "上半身2", "首", "頭", "左肩", "左腕", "左ひじ", "左手首", "左足",
+        "左ひざ", "左足首", "左つま先", "右腕", "右足"}},
+      {"MikuMikuDance with sides at the end",
+       {"腰", "上半身", "上半身２", "首", "頭", "肩.L", "腕.L", "ひじ.L", "手首.L", "足.L",
+        "ひざ.L", "足首.L", "つま先.L", "腕.R", "足.R"}},
       {"small letters",
        {"hips", "spine", "chest", "neck", "head", "leftshoulder", "leftupperarm", "leftlowerarm",
         "lefthand", "leftupperleg", "leftlowerleg", "leftfoot", "lefttoes", "rightupperarm",
@@ -99,6 +115,55 @@ TEST(JointMeaning, IsReadFromEveryConvention) {
           << convention << ": " << names[j];
     }
   }
+}
+
+TEST(JointMeaning, ReadsNumberedArmsByTheLengthsOfTheirBones) {
+  const auto arm = [](std::initializer_list<double> places) {
+    std::vector<RigJoint> joints;
+    for (const double x : places) {
+      const int number = static_cast<int>(joints.size()) + 1;
+      RigJoint joint{"arm_" + std::to_string(number) + "_L", number - 2, {}, -1};
+      joint.rest_world.translation_m.x() = x;
+      joints.push_back(joint);
+    }
+    std::vector<BodyPart> parts;
+    for (const JointMeaning& m : guessMeanings(joints)) parts.push_back(m.part);
+    return parts;
+  };
+  EXPECT_EQ(arm({0.1, 0.4, 0.7}),
+            (std::vector{BodyPart::upperArm, BodyPart::lowerArm, BodyPart::hand}));
+  EXPECT_EQ(arm({0, 0.1, 0.4}),
+            (std::vector{BodyPart::clavicle, BodyPart::upperArm, BodyPart::lowerArm}));
+  EXPECT_EQ(arm({0.1, 0.4, 0.7, 0.8}), (std::vector{BodyPart::upperArm, BodyPart::lowerArm,
+                                                    BodyPart::hand, BodyPart::unknown}));
+}
+
+// Upper and lower body side by side, as MikuMikuDance has them: what holds both is the hips.
+TEST(JointMeaning, HipsHoldBothHalvesOfTheBody) {
+  const std::vector<JointMeaning> m = guessMeanings(tree({{"センター", -1},
+                                                          {"下半身", 0},
+                                                          {"左足", 1},
+                                                          {"右足", 1},
+                                                          {"上半身", 0},
+                                                          {"左腕", 4},
+                                                          {"右腕", 4},
+                                                          {"頭", 4}}));
+  EXPECT_EQ(m[0].part, BodyPart::hips);
+  EXPECT_EQ(m[1].part, BodyPart::unknown);
+  EXPECT_EQ(m[4].part, BodyPart::spine);
+}
+
+TEST(JointMeaning, BelievesWhatTheFileSays) {
+  const std::vector<RigJoint> joints =
+      tree({{"Head", -1}, {"a", 0}, {"b", 1}, {"LeftArm", 1}, {"c", 0}, {"d", 0}});
+  const std::vector<std::string> said{"hips", "chest",        "head",
+                                      "",     "leftUpperLeg", "leftThumbMetacarpal"};
+  const std::vector<JointMeaning> m = guessMeanings(joints, said);
+  EXPECT_EQ(m[0].part, BodyPart::hips);
+  EXPECT_EQ(m[2].part, BodyPart::head);
+  EXPECT_EQ(m[3], JointMeaning{});
+  EXPECT_EQ(m[4], (JointMeaning{BodyPart::upperLeg, BodySide::left}));
+  EXPECT_EQ(m[5], (JointMeaning{BodyPart::thumb, BodySide::left}));
 }
 
 TEST(JointMeaning, LeavesHelpersAlone) {

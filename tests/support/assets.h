@@ -18,4 +18,9 @@ inline std::optional<std::filesystem::path> assetFile(const std::string& name) {
   return file;
 }
 
+// A file that once was read wrongly, kept beside the assets. None: the test is skipped.
+inline std::optional<std::filesystem::path> caseFile(const std::string& name) {
+  return assetFile("../cases/" + name);
+}
+
 }  // namespace fascia

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
 #include <fascia/fitting/containment.h>
 #include <fascia/fitting/solid_fitting.h>
@@ -49,7 +50,8 @@ void markCovered(const FittedSolid& solid, Probes& probes) {
 }  // namespace
 
 void measureFit(const RestSurface& surface, std::span<const FittedSolid> solids,
-                std::span<const std::size_t> solidJoint, FleshFit& fit) {
+                std::span<const std::size_t> solidJoint, const WornPieces& worn, FleshFit& fit) {
+  FASCIA_ASSERT(worn.size() == fit.joints.size(), "a list for each joint");
   std::vector<double> outside(solids.size());
   parallelFor(solids.size(),
               [&](std::size_t i) { outside[i] = deepestOutside_m(surface, solids[i]); });
@@ -63,6 +65,7 @@ void measureFit(const RestSurface& surface, std::span<const FittedSolid> solids,
   std::vector<double> area_m2(fit.joints.size(), 0), covered_m2(fit.joints.size(), 0);
   for (std::size_t i = 0; i < probes.covered.size(); ++i) {
     const SurfaceSample& s = surface.samples()[i];
+    if (std::ranges::find(worn[s.joint[0]], s.piece) != worn[s.joint[0]].end()) continue;
     area_m2[s.joint[0]] += s.area_m2;
     covered_m2[s.joint[0]] += probes.covered[i] ? s.area_m2 : 0;
   }

@@ -10,7 +10,6 @@ namespace fascia {
 namespace {
 
 constexpr int kMostFillers = 3;             // of a part, pairs counted once
-constexpr double kLeastGap = 0.35;          // of the local radius, to count as unfilled
 constexpr double kLeastShare = 0.08;        // of the part's skin that must be unfilled
 constexpr double kLeastBodyShare = 0.0015;  // of the body's
 constexpr double kLeastThickness = 0.3;     // half, over the part's radius
@@ -30,9 +29,7 @@ std::vector<SurfaceSample> worstCluster(const FitSetting& setting, const FleshPa
   std::size_t seed = 0;
   double worst = 0;
   for (std::size_t i = 0; i < gap.size(); ++i) {
-    const double least_m =
-        std::max(kLeastGap * part.own[i].radius_m, 2 * setting.surface.leastFat_m());
-    if (gap[i] < least_m) continue;
+    if (gap[i] < setting.mostGap_m(part.own[i])) continue;
     if (gap[i] > worst) worst = gap[i], seed = unfilled.size();
     unfilled.push_back(part.own[i]);
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,7 @@ struct PartFit {
   std::vector<NamedSolid> solids;
   std::string why;  // where there are none
   double residual_rms_m = 0;
+  std::vector<std::uint32_t> worn;  // pieces of the mesh over the flesh that get none
 };
 
 // What all parts' fits share.
@@ -30,6 +33,11 @@ struct FitSetting {
   const Symmetry& symmetry;
 
   double margin_m() const { return 0.25 * surface.leastFat_m(); }
+  // Beyond the fat, from which a place counts as unfilled.
+  double mostGap_m(const SurfaceSample& sample) const {
+    constexpr double kLeastGap = 0.35;  // of the local radius
+    return std::max(kLeastGap * sample.radius_m, 2 * surface.leastFat_m());
+  }
   // Across which the part's solids are repeated on its other side.
   const MirrorPlane* plane(const FleshPart& part) const {
     return part.paired ? &symmetry.plane : nullptr;

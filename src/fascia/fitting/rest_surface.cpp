@@ -109,6 +109,7 @@ void RestSurface::addSamples(const RiggedModel& model, std::uint32_t triangle, d
       sample.normal = (share[0] * n[0] + share[1] * n[1] + share[2] * n[2]).normalized();
       if (!(sample.normal.squaredNorm() > 0.5)) sample.normal = faceNormals_[triangle];
       sample.area_m2 = area_m2 * piece * piece * (small ? stride : 1);
+      sample.piece = component_[triangle];
       mixInfluences(model, corners, share, sample);
       samples_.push_back(sample);
       sampleTriangle_.push_back(triangle);
@@ -185,15 +186,30 @@ void RestSurface::keepTriangles(const std::vector<char>& sampled, const std::vec
   visible_.positions = mesh_.positions;
   visible_.normals = mesh_.normals;
   std::vector<char> used(mesh_.positions.size(), 0);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // corner, its piece
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     if (sampled[t] && !seen[t]) continue;
     visible_.triangles.push_back(mesh_.triangles[t]);
     for (const std::uint32_t corner : mesh_.triangles[t]) {
-      if (!used[corner]) corners_.push_back(mesh_.positions[corner].cast<double>());
+      if (!used[corner]) candidates.emplace_back(corner, component_[t]);
       used[corner] = 1;
     }
   }
+  addCorners(candidates);
   visibleHierarchy_.emplace(visible_);
+}
+
+// A large triangle that shows may have a corner that does not: the middle of a hat's brim.
+void RestSurface::addCorners(
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>>& candidates) {
+  std::vector<char> hidden(candidates.size(), 0);
+  parallelFor(hiddenShare_ > 0 ? candidates.size() : 0, [&](std::size_t i) {
+    const auto& [corner, piece] = candidates[i];
+    const Vec3 normal = mesh_.normals[corner].cast<double>();
+    hidden[i] = inside(mesh_.positions[corner].cast<double>() + 1e-4 * size_m_ * normal, piece);
+  });
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (!hidden[i]) corners_.push_back(mesh_.positions[candidates[i].first].cast<double>());
 }
 
 bool RestSurface::inside(const Vec3& p, std::uint32_t except) const {

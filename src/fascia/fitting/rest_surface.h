@@ -15,8 +15,9 @@ struct SurfaceSample {
   static constexpr std::size_t kMostJoints = 4;
   Vec3 position_m, normal;
   double area_m2 = 0;
-  double radius_m = 0;  // half the local thickness of the body; 0: no inside beneath
-  double fat_m = 0;     // wanted distance of the flesh
+  double radius_m = 0;      // half the local thickness of the body; 0: no inside beneath
+  double fat_m = 0;         // wanted distance of the flesh
+  std::uint32_t piece = 0;  // RiggedModel::component
   std::array<std::uint16_t, kMostJoints> joint{};  // heaviest first
   std::array<double, kMostJoints> weight{};
 
@@ -64,6 +65,7 @@ class RestSurface {
   void measureThickness(SurfaceSample& sample) const;
   void dropHidden();
   void keepTriangles(const std::vector<char>& sampled, const std::vector<char>& seen);
+  void addCorners(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& candidates);
 
   TriangleMesh mesh_;  // welded, with smooth normals
   std::vector<Vec3> faceNormals_;

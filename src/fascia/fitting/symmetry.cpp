@@ -37,15 +37,36 @@ int imageOf(const RiggedModel& model, const Symmetry& symmetry, std::size_t j, d
   return best;
 }
 
-Symmetry pairJoints(const RiggedModel& model, const MirrorPlane& plane, double size_m) {
+// Joints that hold the whole body but move no skin of it: where they stand (often at the world's
+// origin, or between the feet) says nothing about the body. They come first, each below the one
+// before. Their count.
+std::size_t handleCount(const RiggedModel& model) {
+  std::vector<std::size_t> children(model.joints.size(), 0);
+  std::vector<char> moves(model.joints.size(), 0);
+  for (const RigJoint& joint : model.joints)
+    if (joint.parent >= 0) ++children[static_cast<std::size_t>(joint.parent)];
+  for (const PointWeights& w : model.weights)
+    for (std::size_t i = 0; i < PointWeights::kMost && w.weight[i] > 0; ++i) moves[w.joint[i]] = 1;
+  std::size_t count = 0;
+  while (count < model.joints.size() && !moves[count] &&
+         model.joints[count].parent == static_cast<int>(count) - 1) {
+    ++count;
+    if (children[count - 1] != 1) break;  // what hangs on it are the body's own branches
+  }
+  return count;
+}
+
+Symmetry pairJoints(const RiggedModel& model, const MirrorPlane& plane, double size_m,
+                    std::size_t handles) {
   Symmetry symmetry{true, plane, std::vector<int>(model.joints.size(), -1)};
   const double tolerance_m = kJointTolerance * size_m;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     if (symmetry.partner[j] >= 0) continue;
     const int parent = model.joints[j].parent;
     const double off_m = std::abs(position(model, j)[plane.axis] - plane.offset_m);
-    const bool onAxis = off_m < 0.5 * tolerance_m &&
-                        (parent < 0 || symmetry.central(static_cast<std::size_t>(parent)));
+    const bool onAxis =
+        j < handles || (off_m < 0.5 * tolerance_m &&
+                        (parent < 0 || symmetry.central(static_cast<std::size_t>(parent))));
     const int image = onAxis ? static_cast<int>(j) : imageOf(model, symmetry, j, tolerance_m);
     if (image < 0) continue;
     symmetry.partner[j] = image;
@@ -74,10 +95,13 @@ Symmetry findSymmetry(const RiggedModel& model) {
   const double size_m = box.size().norm();
   const TriangleMesh mesh{model.points_m, {}, {}, model.triangles};
   const TriangleHierarchy surface(mesh);
+  const std::size_t handles = handleCount(model);
+  const std::size_t body = std::min(handles, model.joints.size() - 1);  // the first joint of it
   for (const int axis : {0, 2}) {
-    for (const double offset_m : {position(model, 0)[axis], box.center()[axis]}) {
+    for (const double offset_m :
+         {position(model, 0)[axis], box.center()[axis], position(model, body)[axis]}) {
       const MirrorPlane plane{axis, offset_m};
-      Symmetry symmetry = pairJoints(model, plane, size_m);
+      Symmetry symmetry = pairJoints(model, plane, size_m, handles);
       const auto met = std::count_if(symmetry.partner.begin(), symmetry.partner.end(),
                                      [](int partner) { return partner >= 0; });
       // Joints that are all in the plane say nothing: a chain is not a pair of limbs.

@@ -31,11 +31,12 @@ struct Found {
 
 class Guesser {
  public:
-  Guesser(std::span<const RigJoint> source, std::span<const RigJoint> target)
+  Guesser(std::span<const RigJoint> source, std::span<const RigJoint> target,
+          const SaidJoints& said)
       : source_(source),
         target_(target),
-        sourceMeanings_(guessMeanings(source)),
-        targetMeanings_(guessMeanings(target)),
+        sourceMeanings_(guessMeanings(source, said.source)),
+        targetMeanings_(guessMeanings(target, said.target)),
         found_(target.size()),
         isFixed_(target.size(), false) {}
 
@@ -243,8 +244,9 @@ JointMap Guesser::map() const {
 }  // namespace
 
 JointMap guessJointMap(std::span<const RigJoint> source, std::span<const RigJoint> target,
-                       std::span<const JointPair> given, std::vector<std::string>* notes) {
-  Guesser guesser(source, target);
+                       std::span<const JointPair> given, std::vector<std::string>* notes,
+                       const SaidJoints& said) {
+  Guesser guesser(source, target, said);
   std::unordered_set<std::string> silent;
   std::vector<Issue> issues;
   for (const JointPair& pair : given) guesser.give(pair, silent, issues);

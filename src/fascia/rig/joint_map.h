@@ -18,12 +18,17 @@ struct JointPair {
 };
 using JointMap = std::vector<JointPair>;  // targets in the rig's order
 
+// What the files of both say of their joints (see guessMeanings).
+struct SaidJoints {
+  std::span<const std::string> source = {}, target = {};
+};
+
 // Pairs by name and structure. `given` pairs win over guesses. Pairs that contradict the hierarchy
 // are left out; `notes` says which, and what has no counterpart. Throws Error with
 // every given name that does not exist, and its line.
 JointMap guessJointMap(std::span<const RigJoint> source, std::span<const RigJoint> target,
                        std::span<const JointPair> given = {},
-                       std::vector<std::string>* notes = nullptr);
+                       std::vector<std::string>* notes = nullptr, const SaidJoints& said = {});
 
 // "source = target" a line; # starts a comment; nothing after the sign: drives nothing. Throws
 // Error with the line.

@@ -53,7 +53,11 @@ std::string describe(JointMeaning meaning);  // "left upper arm"
 // "l_elbow", "upperarm_l", "Bip01 L Thigh" … A word that several rigs use for different bones
 // (shoulder, leg, finger 1) is settled by what else the rig has. Then by structure: whoever holds
 // both legs is the hips, and what leads from there to the head is spine up to the arms, neck above.
-std::vector<JointMeaning> guessMeanings(std::span<const RigJoint> joints);
+// Limbs whose joints are only numbered ("arm_joint_L_1" to 4) are read along their chain.
+// `said`: per joint, what the file itself says that it is, in the words of VRM's humanoids
+// ("leftUpperArm"; empty: it says nothing). Where any is given, names are not read.
+std::vector<JointMeaning> guessMeanings(std::span<const RigJoint> joints,
+                                        std::span<const std::string> said = {});
 
 // The nearest common ancestor of joints; -1 if there are none or they share none.
 int commonAncestor(std::span<const RigJoint> joints, std::span<const int> of);

@@ -60,6 +60,8 @@ const std::unordered_map<std::string_view, JointWord>& vocabulary() {
       {"back", JointWord::spine},
       {"torso", JointWord::spine},
       {"waist", JointWord::spine},
+      {"upperbody", JointWord::spine},
+      {"lowerbody", JointWord::hips},
       {"ribcage", JointWord::spine},
       {"neck", JointWord::neck},
       {"necklower", JointWord::neck},
@@ -122,8 +124,9 @@ bool isHelperWord(const std::string& word) {
 }
 
 bool isPrefixWord(const std::string& word) {
-  static const char* const all[] = {"def", "org", "mixamorig", "bip",   "j",  "b",     "c",
-                                    "cc",  "jnt", "bone",      "valve", "sk", "biped", "f"};
+  static const char* const all[] = {"def",   "org",      "mixamorig", "bip",  "j",     "b",
+                                    "c",     "cc",       "jnt",       "bone", "sk",    "f",
+                                    "biped", "skeleton", "armature",  "rig",  "joint", "valve"};
   return std::any_of(std::begin(all), std::end(all), [&](const char* w) { return word == w; });
 }
 
@@ -149,15 +152,16 @@ bool takeSide(std::string& word, BodySide& side) {
 
 bool lookUp(std::string_view word, JointReading& reading) {
   const auto& all = vocabulary();
-  constexpr std::string_view kHand = "hand", kJoint = "joint";
+  constexpr std::string_view kHand = "hand", kSuffixes[] = {"joint", "bone", "jnt"};
   auto found = all.find(word);
-  // "hand index", "wrist joint": the other word alone.
-  if (found == all.end() && word.starts_with(kHand)) {
-    word.remove_prefix(kHand.size());
+  // "wrist joint", "hips bone", "hand index": the other word alone.
+  for (const std::string_view suffix : kSuffixes) {
+    if (found != all.end() || !word.ends_with(suffix)) continue;
+    word.remove_suffix(suffix.size());
     found = all.find(word);
   }
-  if (found == all.end() && word.ends_with(kJoint)) {
-    word.remove_suffix(kJoint.size());
+  if (found == all.end() && word.starts_with(kHand)) {
+    word.remove_prefix(kHand.size());
     found = all.find(word);
   }
   if (found == all.end()) return false;
@@ -168,6 +172,7 @@ bool lookUp(std::string_view word, JointReading& reading) {
 }  // namespace
 
 JointReading readJointName(std::string_view name) {
+  if (JointReading japanese = readJapaneseJointName(name); japanese.known) return japanese;
   JointReading reading;
   Words words = wordsOf(name);
   std::string whole;

@@ -46,4 +46,7 @@ struct JointReading {
 
 JointReading readJointName(std::string_view name);
 
+// "左ひじ", "上半身2", "ひじ.L": as MikuMikuDance and what came from it call their joints.
+JointReading readJapaneseJointName(std::string_view name);
+
 }  // namespace fascia

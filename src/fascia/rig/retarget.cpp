@@ -73,8 +73,8 @@ class Retargeter {
         target_(target),
         options_(options),
         notes_(notes),
-        sourceMeanings_(guessMeanings(source.joints)),
-        targetMeanings_(guessMeanings(target.joints)),
+        sourceMeanings_(guessMeanings(source.joints, options.sourceSaid)),
+        targetMeanings_(guessMeanings(target.joints, options.said)),
         driven_(drivenJoints(source, target, map, targetMeanings_)) {
     if (driven_.empty()) {
       throw Error("no joint of the rig is driven by the motion: give a joint map");

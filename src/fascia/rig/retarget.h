@@ -23,6 +23,8 @@ struct RetargetOptions {
   // Legs bend a little so that feet stand where the recorded ones stood: proportions differ, and
   // directions alone let the feet slide.
   bool plantFeet = true;
+  // What the source's and the target's files say of their joints (see guessMeanings).
+  std::vector<std::string> sourceSaid = {}, said = {};
 };
 
 // The motion on the rig, as frames of all its joints. Every driven joint turns in the world as its

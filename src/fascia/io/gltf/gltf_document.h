@@ -78,6 +78,7 @@ class GltfDocument {
   void unpackCompressedViews();   // EXT_meshopt_compression
   void unpackCompressedMeshes();  // KHR_draco_mesh_compression
   void unpackMesh(std::size_t mesh, std::size_t primitive);
+  void renewBounds(int accessor);
   void forgetExtension(std::string_view name);
   void embedImages();
   using Bytes = std::shared_ptr<std::vector<std::uint8_t>>;

@@ -1,6 +1,10 @@
 // KHR_draco_mesh_compression: primitives whose attributes and indices are packed together.
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <new>
+#include <numeric>
 
 #include <draco/compression/decode.h>
 #include <draco/compression/point_cloud/point_cloud_decoder.h>
@@ -115,6 +119,23 @@ struct Attribute {
   std::size_t stride = 0, count = 0;
 };
 
+// Weights that were rounded when they were packed do not sum to one any more, which players and
+// validators mind. `sets`: of four floats a vertex, all of one primitive.
+void evenWeights(std::span<Attribute* const> sets, std::size_t vertices) {
+  constexpr float kMostRounding = 0.05f;
+  std::vector<float> w(4 * sets.size());
+  for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t s = 0; s < sets.size(); ++s)
+      std::memcpy(&w[4 * s], &sets[s]->data[16 * v], 16);
+    const float sum = std::accumulate(w.begin(), w.end(), 0.0f);
+    if (!(std::abs(sum - 1) <= kMostRounding)) continue;
+    for (float& weight : w) weight /= sum;
+    *std::max_element(w.begin(), w.end()) += 1 - std::accumulate(w.begin(), w.end(), 0.0f);
+    for (std::size_t s = 0; s < sets.size(); ++s)
+      std::memcpy(&sets[s]->data[16 * v], &w[4 * s], 16);
+  }
+}
+
 struct UnpackedPrimitive {
   std::vector<Attribute> attributes;
   std::vector<std::uint32_t> indices;
@@ -148,10 +169,16 @@ UnpackedPrimitive unpackPrimitive(const GltfDocument& document, const GltfPlace&
   const GltfPlace ids = packed["attributes"];
   if (!ids || !ids.json()->is(Json::Kind::object)) packed.fail("has no attributes");
   UnpackedPrimitive out;
+  std::vector<std::size_t> weights;
   for (const Json::Member& id : ids.json()->object()) {
     out.attributes.push_back(
         unpackAttribute(root, ids[id.key], primitive["attributes"][id.key], *mesh));
+    const bool fourFloats = out.attributes.back().data.size() == 16 * out.attributes.back().count;
+    if (id.key.starts_with("WEIGHTS_") && fourFloats) weights.push_back(out.attributes.size() - 1);
   }
+  std::vector<Attribute*> sets;
+  for (const std::size_t i : weights) sets.push_back(&out.attributes[i]);
+  if (!sets.empty()) evenWeights(sets, mesh->num_points());
   out.indices = faceIndices(*mesh);
   out.indexAccessor = primitive["indices"].indexOr(-1, static_cast<int>(root["accessors"].size()));
   return out;
@@ -167,6 +194,32 @@ void fillAccessor(Json& root, int accessor, std::size_t count, int view) {
 }
 
 }  // namespace
+
+// "min" and "max" were those of the data before they were packed, which may have rounded them.
+void GltfDocument::renewBounds(int accessor) {
+  Json& entry = item("accessors", accessor);
+  if (!entry.find("min") && !entry.find("max")) return;
+  GltfAccessor source = GltfAccessor::of(*this, accessor);
+  source.normalized = false;
+  const auto components = static_cast<std::size_t>(source.components);
+  std::vector<double> low(components, std::numeric_limits<double>::infinity());
+  std::vector<double> high(components, -std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < source.count && source.data; ++i) {
+    for (std::size_t c = 0; c < components; ++c) {
+      const double value = source.number(source.data + i * source.stride, c);
+      low[c] = std::min(low[c], value);
+      high[c] = std::max(high[c], value);
+    }
+  }
+  for (const auto& [key, values] : {std::pair{"min", low}, {"max", high}}) {
+    const bool finite =
+        std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    if (finite)
+      putMember(entry, key, numberList(values));
+    else
+      eraseMember(entry, key);
+  }
+}
 
 void GltfDocument::unpackCompressedMeshes() {
   const std::size_t meshes = root()["meshes"].size();
@@ -186,6 +239,7 @@ void GltfDocument::unpackMesh(std::size_t mesh, std::size_t primitive) {
   for (const Attribute& a : unpacked.attributes) {
     fillAccessor(json_, a.accessor, a.count,
                  addView(a.data.data(), a.data.size(), Target::none, a.stride));
+    renewBounds(a.accessor);
   }
   int indices = unpacked.indexAccessor;
   if (indices < 0) {
@@ -195,6 +249,7 @@ void GltfDocument::unpackMesh(std::size_t mesh, std::size_t primitive) {
     fillAccessor(json_, indices, unpacked.indices.size(), view);
     Json& entry = findMember(json_, "accessors")->list()[static_cast<std::size_t>(indices)];
     putMember(entry, "componentType", static_cast<int>(kGltfUnsignedInt));
+    renewBounds(indices);
   }
   Json& entry =
       findMember(findMember(json_, "meshes")->list()[mesh], "primitives")->list()[primitive];

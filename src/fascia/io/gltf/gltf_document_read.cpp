@@ -48,7 +48,8 @@ Chunks glbChunks(std::string_view bytes, const std::string& path) {
 // Extensions that a reader of shapes, rigs and motions may require without loss, beyond those of
 // the looks, which are kept as they are.
 bool mayBeRequired(std::string_view name) {
-  constexpr std::array kLooks = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"};
+  constexpr std::array kLooks = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_",
+                                 "VRM"};
   constexpr std::array kShapes = {"KHR_mesh_quantization",   "KHR_draco_mesh_compression",
                                   "EXT_meshopt_compression", "KHR_animation_pointer",
                                   "KHR_node_visibility",     "MSFT_texture_dds"};

@@ -10,16 +10,20 @@
 
 namespace fascia {
 
-// Whether a text names a motion capture file instead of a motion: by its ending.
+// Whether a text names a file instead of a motion, by its ending: motion capture (.bvh, .bvh.gz),
+// or a rig's file, of which the first motion is taken (.glb, .gltf, .vrm, .vrma; .fbx and .dae with
+// their meshes).
 bool isMotionFile(std::string_view motion);
 
-// A motion capture file, and how its joints drive a rig's.
+// A file that holds a motion, and how its joints drive a rig's.
 struct MotionFile {
   std::string path;
   MotionFigure figure;  // metres
   std::string unit;     // what its lengths were taken for
   JointMap map;
   std::vector<std::string> notes;
+  // What the motion's and the rig's files say of their joints (see guessMeanings).
+  std::vector<std::string> sourceSaid, said;
 };
 
 // joint_map: a file of pairs that win over the guesses; empty = all guessed. Throws Error.

@@ -6,6 +6,7 @@
 
 #include <fascia/base/index.h>
 #include <fascia/io/gltf/gltf_animation.h>
+#include <fascia/io/rig_export/other_channels.h>
 #include <fascia/io/rig_export/rig_player.h>
 #include <fascia/io/rig_import/gltf/gltf_clip.h>
 
@@ -158,17 +159,17 @@ void addJointChannels(RigSource& source, const RigClip& clip, const BakedAnimati
 
 // What else the animation moves stays.
 void eraseJointChannels(const RigSource& source, Json& animation) {
-  std::erase_if(ensureList(animation, "channels").list(), [&](const Json& channel) {
-    const Json* target = channel.find("target");
-    const Json* node = target ? target->find("node") : nullptr;
-    const Json* path = target ? target->find("path") : nullptr;
-    if (!node || !path || !node->is(Json::Kind::number) || !path->is(Json::Kind::text))
-      return false;
-    const auto& joints = source.rig.nodeOfJoint;
-    return (path->text() == "rotation" || path->text() == "translation") &&
-           std::find(joints.begin(), joints.end(), static_cast<int>(node->number())) !=
-               joints.end();
-  });
+  std::erase_if(ensureList(animation, "channels").list(),
+                [&](const Json& channel) { return movesJoint(source, channel); });
+}
+
+// What a recording shows of a motion of the file that begins at `start_s` on its clock.
+GltfSpan spanOf(const RigClip& clip, double start_s) {
+  const auto& frames = clip.recording.frames;
+  const auto motion = std::ranges::find(clip.model.motions, clip.motion, &SampledMotion::name);
+  const bool loops = motion != clip.model.motions.end() && motion->loop;
+  return {start_s + frames.front().time_s, frames.back().time_s - frames.front().time_s,
+          loops ? motion->duration_s() : 0};
 }
 
 }  // namespace
@@ -193,11 +194,13 @@ BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip) {
   BakedAnimation out;
   out.index = animationNamed(source, clip.motion);
   bool whole = false;
+  double start_s = 0;
   if (out.index >= 0) {
     std::vector<std::string> notes;
     const GltfClip old = readGltfClip(source.document, source.scene, at(out.index), notes);
+    start_s = old.start_s();
     whole = isWhole(clip, old) && movedAsTheFile(clip);
-    if (whole) out.start_s = static_cast<float>(old.start_s());
+    out.start_s = static_cast<float>(start_s);
     out.keepsJoints = whole && playsAsRecorded(source, clip, out.index, out.start_s);
   }
   out.times = source.document.addFloats(frameTimes(clip, out.start_s), "SCALAR", true);
@@ -206,13 +209,10 @@ BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip) {
     out.index = source.document.add(
         "animations", Json::Object{{"name", clip.motion.empty() ? "fascia" : clip.motion}});
   }
-  Json& animation = source.document.item("animations", out.index);
-  if (whole) {
-    eraseJointChannels(source, animation);
-  } else {
-    putMember(animation, "samplers", Json::List{});
-    putMember(animation, "channels", Json::List{});
-  }
+  if (whole)
+    eraseJointChannels(source, source.document.item("animations", out.index));
+  else
+    out.leftOut = cutOtherChannels(source, out.index, spanOf(clip, start_s));
   addJointChannels(source, clip, out);
   return out;
 }

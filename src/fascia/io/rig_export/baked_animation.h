@@ -13,11 +13,13 @@ struct BakedAnimation {
   float start_s = 0;         // of the recording's first frame, on the animation's clock
   int times = 0;             // accessor: of the recording's frames
   bool keepsJoints = false;  // the joints' channels are the file's own
+  std::size_t leftOut = 0;   // channels of other things that could not be cut to the recording
 };
 
 // Finds the file's animation of the clip's name and keeps its channels, if the recording is of all
 // of it and moved the joints as it does; where players would not show that, joints get keys of the
-// recording. Otherwise writes the joints' motion alone: into that animation, or a new one.
+// recording. Otherwise writes the joints' motion: into that animation, whose other channels are cut
+// or repeated to the recording's length, or into a new one.
 BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip);
 
 // Linear keys at the recording's frames. type: "VEC3"; path: "translation", "rotation", "weights".

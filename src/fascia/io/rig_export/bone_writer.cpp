@@ -4,9 +4,11 @@
 
 #include <fascia/base/index.h>
 #include <fascia/io/rig_export/baked_animation.h>
+#include <fascia/io/rig_export/other_channels.h>
 #include <fascia/io/rig_export/other_motions.h>
 #include <fascia/io/rig_export/rig_geometry.h>
 #include <fascia/io/rig_export/rig_player.h>
+#include <fascia/io/rig_export/springs.h>
 
 namespace fascia {
 namespace {
@@ -58,6 +60,7 @@ class BoneWriter {
     std::vector<PlayedClip> played;
     for (const RigClip& clip : source_.clips) {
       animations.push_back(prepareAnimation(source_, clip));
+      leftOut_ += animations.back().leftOut;
       played.push_back({clip, animations.back().index, animations.back().start_s});
     }
     if (found_.plain) return played;
@@ -67,6 +70,9 @@ class BoneWriter {
     for (std::size_t s = 0; s < source_.rig.skins.size(); ++s) writeSkin(static_cast<int>(s));
     return played;
   }
+
+  // Channels that had to be left out.
+  std::size_t leftOut() const { return leftOut_; }
 
   // Lets helpers move in a motion that is not baked, so that the surface is as it was.
   void follow(const OtherMotion& other) {
@@ -323,6 +329,7 @@ class BoneWriter {
   std::set<int> soft_;             // nodes that got a skin
   std::set<std::string> names_;
   int lastName_ = 0;
+  std::size_t leftOut_ = 0;  // channels
 };
 
 // All clips' frames as one motion.
@@ -346,7 +353,7 @@ SkinningDecomposition decompose(std::span<const RigClip> clips,
 }  // namespace
 
 RigBakeReport writeRigAsBones(std::span<const RigClip> clips, const DecompositionOptions& options,
-                              const std::string& path) {
+                              const std::string& path, const RigFileOptions& file) {
   RigSource source = RigSource::open(clips);
   const std::vector<OtherMotion> others = otherMotions(source);
   const auto tell = [&](double share) {
@@ -365,10 +372,13 @@ RigBakeReport writeRigAsBones(std::span<const RigClip> clips, const Decompositio
     }
   }
   tell(kAllFollowed);
+  const std::vector<std::string> springs = settleSprings(source, file);
   source.document.writeGlb(path);
   RigBakeReport report;
   report.plain = found.plain;
   report.added = found.helpers.size();
+  report.notes = notesOfMotions(clips, writer.leftOut());
+  report.notes.insert(report.notes.end(), springs.begin(), springs.end());
   report.files = {path};
   measurePlayed(path, source.scale, played, 0, report);
   report.others = measureOthers(source, path, others, 0);

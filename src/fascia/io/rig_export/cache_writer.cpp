@@ -9,6 +9,7 @@
 #include <fascia/io/cache/mdd.h>
 #include <fascia/io/cache/pc2.h>
 #include <fascia/io/gltf/gltf_accessor.h>
+#include <fascia/io/rig_export/other_channels.h>
 #include <fascia/io/rig_export/rig_source.h>
 
 namespace fascia {
@@ -174,6 +175,32 @@ class StillWriter {
   const RiggedModel& model_;
 };
 
+std::size_t sizeOf(const GltfDocument& document, const char* list) {
+  return document.root()[list].size();
+}
+
+// What a still picture and its caches cannot hold, for a person; empty if that is nothing.
+std::string leftOutOf(const RigSource& source) {
+  const GltfDocument& document = source.document;
+  std::string text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  };
+  add(source.clip.model.joints.size(), "joints");
+  add(sizeOf(document, "animations"), "animations");
+  add(sizeOf(document, "cameras"), "cameras");
+  std::size_t morphed = 0;
+  const GltfPlace meshes = document.root()["meshes"];
+  for (const RigPart& part : source.clip.model.parts)
+    morphed += meshes.at(at(part.mesh))["primitives"].at(at(part.primitive))["targets"].size() > 0;
+  add(morphed, "primitives' morph targets");
+  const Json* extensions = document.json().find("extensions");
+  for (const Json::Member& member :
+       extensions && extensions->is(Json::Kind::object) ? extensions->object() : Json::Object{})
+    if (member.key != "KHR_materials_variants") text += ", the extension " + jsonText(member.key);
+  return text.empty() ? text : "a cache holds no skeleton: left out are " + text;
+}
+
 Recording cacheOf(const CachedMesh& mesh, const Recording& recording) {
   Recording out;
   out.frame_rate_hz = recording.frame_rate_hz;
@@ -248,6 +275,8 @@ RigBakeReport writeRigAsCache(const RigClip& clip, const std::string& path) {
     entries += static_cast<double>(cache.frames.size() * meshes[m].vertices.size());
   }
   report.error.rms_mm = 1e3 * std::sqrt(sum_m2 / entries);
+  report.notes = notesOfMotions(source.clips, 0);
+  report.notes.push_back(leftOutOf(source));
   StillWriter(source).write(meshes);
   source.document.writeGlb(path);
   return report;

@@ -3,9 +3,11 @@
 
 #include <fascia/base/index.h>
 #include <fascia/io/rig_export/baked_animation.h>
+#include <fascia/io/rig_export/other_channels.h>
 #include <fascia/io/rig_export/other_motions.h>
 #include <fascia/io/rig_export/rig_geometry.h>
 #include <fascia/io/rig_export/rig_player.h>
+#include <fascia/io/rig_export/springs.h>
 
 namespace fascia {
 namespace {
@@ -43,15 +45,14 @@ class MorphWriter {
 
   std::vector<PlayedClip> write() {
     source_.separateMeshes();
-    std::vector<RigPlayer> before;  // the file's own targets keep what animations did with them
-    for (const RigClip& clip : source_.clips) {
-      before.emplace_back(source_.document, model_.parts, animationNamed(source_, clip.motion),
-                          source_.scale, 0);
-    }
     std::vector<BakedAnimation> animations;
     for (const RigClip& clip : source_.clips) {
       animations.push_back(prepareAnimation(source_, clip));
+      leftOut_ += animations.back().leftOut;
     }
+    std::vector<RigPlayer> before;  // the file's own targets keep what animations did with them
+    for (const BakedAnimation& animation : animations)
+      before.emplace_back(source_.document, model_.parts, animation.index, source_.scale, 0);
     // A mesh's weights are its node's: told by its first part.
     std::map<int, std::size_t> firstPart;
     for (std::size_t p = 0; p < model_.parts.size(); ++p) {
@@ -81,6 +82,9 @@ class MorphWriter {
     }
     return played;
   }
+
+  // Channels that had to be left out.
+  std::size_t leftOut() const { return leftOut_; }
 
  private:
   Json& meshOf(int node) {
@@ -246,12 +250,13 @@ class MorphWriter {
   RigSource& source_;
   const RiggedModel& model_;
   const MorphBasis& basis_;
+  std::size_t leftOut_ = 0;  // channels
 };
 
 }  // namespace
 
 RigBakeReport writeRigAsMorphs(std::span<const RigClip> clips, const MorphOptions& options,
-                               const std::string& path) {
+                               const std::string& path, const RigFileOptions& file) {
   RigSource source = RigSource::open(clips);
   const RiggedModel& model = source.clip.model;
   const std::vector<OtherMotion> others = otherMotions(source);
@@ -264,9 +269,13 @@ RigBakeReport writeRigAsMorphs(std::span<const RigClip> clips, const MorphOption
     }
   }
   const MorphBasis basis = findMorphBasis(model.points_m, model.weights, bones, frames, options);
-  const std::vector<PlayedClip> played = MorphWriter(source, basis).write();
+  MorphWriter writer(source, basis);
+  const std::vector<PlayedClip> played = writer.write();
+  const std::vector<std::string> springs = settleSprings(source, file);
   source.document.writeGlb(path);
   RigBakeReport report;
+  report.notes = notesOfMotions(clips, writer.leftOut());
+  report.notes.insert(report.notes.end(), springs.begin(), springs.end());
   report.added = basis.targets.size();
   report.plain = basis.targets.empty();
   report.files = {path};

@@ -92,13 +92,10 @@ void RigPlayer::readWeightTracks(int animation) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const GltfPlace target = channels.at(c)["target"];
     if (target["path"].textOr("") != "weights" || !target["node"]) continue;
-    const GltfPlace samplers = json["samplers"];
-    const GltfPlace sampler =
-        samplers.at(at(channels.at(c)["sampler"].index(static_cast<int>(samplers.size()))));
-    WeightTrack& track = weightTracks_.emplace_back();
+    WeightTrack track;
     track.node = target["node"].index(static_cast<int>(scene_.nodes.size()));
-    track.times_s = document_.floats(accessorOf(document_, sampler["input"]), 1);
-    track.values = document_.floats(accessorOf(document_, sampler["output"]), 1);
+    if (readGltfKeys(document_, json, *channels.at(c).json(), track.keys))
+      weightTracks_.push_back(std::move(track));
   }
 }
 
@@ -122,17 +119,9 @@ std::vector<double> RigPlayer::morphWeights(std::size_t index, double time_s) co
   const Part& part = parts_[index];
   std::vector<double> out(part.restWeights.begin(), part.restWeights.end());
   for (const WeightTrack& track : weightTracks_) {
-    const std::size_t keys = track.times_s.size();
-    if (track.node != part.node || keys == 0 || track.values.size() != keys * out.size()) continue;
-    const auto after = static_cast<std::size_t>(
-        std::upper_bound(track.times_s.begin(), track.times_s.end(), static_cast<float>(time_s)) -
-        track.times_s.begin());
-    const std::size_t b = std::min(after, keys - 1), a = after > 0 ? after - 1 : 0;
-    const double span = static_cast<double>(track.times_s[b]) - track.times_s[a];
-    const double u = span > 0 ? (time_s - track.times_s[a]) / span : 0;
-    for (std::size_t t = 0; t < out.size(); ++t) {
-      out[t] = (1 - u) * track.values[a * out.size() + t] + u * track.values[b * out.size() + t];
-    }
+    if (track.node != part.node || track.keys.width != out.size()) continue;
+    const std::vector<float> values = track.keys.valueAt(time_s);
+    out.assign(values.begin(), values.end());
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <fascia/io/gltf/gltf_keys.h>
 #include <fascia/io/rig_export/rig_writer.h>
 #include <fascia/io/rig_import/gltf/gltf_clip.h>
 
@@ -28,7 +29,7 @@ class RigPlayer {
  private:
   struct WeightTrack {  // of morph targets
     int node = 0;
-    std::vector<float> times_s, values;  // key * targets
+    GltfKeys keys;
   };
   struct Skin {
     std::vector<int> nodes;

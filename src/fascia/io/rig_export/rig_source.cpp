@@ -160,9 +160,8 @@ void RigSource::separateMeshes() {
 
 int RigSource::addTopNode(Json value) {
   const int index = document.add("nodes", std::move(value));
-  const Json* shown = document.json().find("scene");
-  if (document.root()["scenes"].size() == 0) return index;  // files without scenes show everything
-  Json& list = document.item("scenes", shown ? static_cast<int>(shown->number()) : 0);
+  if (scene.shown < 0) return index;  // files without scenes show everything
+  Json& list = document.item("scenes", scene.shown);
   ensureList(list, "nodes").list().push_back(index);
   return index;
 }

@@ -38,6 +38,7 @@ struct RigBakeReport {
   std::vector<std::string> files;  // written
   std::vector<Motion> baked;       // against the simulation
   std::vector<Motion> others;      // the file's other motions, against its own skinning
+  std::vector<std::string> notes;  // what was left out of the file, for a person
   bool plain = false;  // nothing moved beyond that skinning: nothing was looked for, nothing added
 };
 
@@ -46,25 +47,35 @@ struct RigBakeReport {
 // meshes and other animations. Of other formats what the model holds survives, in metres. All clips
 // are of one model, and have names of their own.
 
+// What is done to the rest of the file.
+struct RigFileOptions {
+  // Of a VRM: swinging chains whose joints move the skin are taken out, as the bake moves that
+  // already; players would swing it once more.
+  bool replaceSprings = false;
+};
+
 // Helper bones below the rig's joints and new weights, the same for all motions: plays in every
 // engine. In the file's other motions helpers move so that the surface stays as it was there.
 RigBakeReport writeRigAsBones(std::span<const RigClip> clips, const DecompositionOptions& options,
-                              const std::string& path);
+                              const std::string& path, const RigFileOptions& file = {});
 
 // Morph targets, the same for all motions, on top of the rig's own skinning, after those that the
 // file has. Vertices at one place get one vertex' weights, as they were simulated: seams stay
 // closed.
 RigBakeReport writeRigAsMorphs(std::span<const RigClip> clips, const MorphOptions& options,
-                               const std::string& path);
+                               const std::string& path, const RigFileOptions& file = {});
 
 inline RigBakeReport writeRigAsBones(const RigClip& clip, const DecompositionOptions& options,
-                                     const std::string& path) {
-  return writeRigAsBones(std::span<const RigClip>(&clip, 1), options, path);
+                                     const std::string& path, const RigFileOptions& file = {}) {
+  return writeRigAsBones(std::span<const RigClip>(&clip, 1), options, path, file);
 }
 inline RigBakeReport writeRigAsMorphs(const RigClip& clip, const MorphOptions& options,
-                                      const std::string& path) {
-  return writeRigAsMorphs(std::span<const RigClip>(&clip, 1), options, path);
+                                      const std::string& path, const RigFileOptions& file = {}) {
+  return writeRigAsMorphs(std::span<const RigClip>(&clip, 1), options, path, file);
 }
+
+// Whether the model's file is a VRM, which what is written for it stays but as a cache.
+bool isVrm(const RiggedModel& model);
 
 // The rest surface without a skeleton as a GLB, and for every mesh a point cache of all frames in
 // two formats beside it: "fox.glb" gets "fox.pc2" and "fox.mdd", with the mesh' name in between if

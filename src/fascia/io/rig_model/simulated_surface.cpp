@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include <fascia/base/error.h>
+#include <fascia/geometry/orientation.h>
 #include <fascia/geometry/weld.h>
 
 namespace fascia {
@@ -61,6 +62,19 @@ void keepSoundTriangles(RiggedModel& model) {
   }
 }
 
+// Only what is simulated is turned: the file shows its triangles as it always did.
+void turnInsideOutPieces(RiggedModel& model) {
+  const TriangleMesh mesh{model.points_m, {}, {}, model.triangles};
+  const std::vector<std::uint32_t> pieces =
+      insideOutPieces(mesh, model.component, model.componentCount);
+  if (pieces.empty()) return;
+  for (auto& t : model.triangles)
+    if (std::ranges::binary_search(pieces, model.component[t[0]])) std::swap(t[1], t[2]);
+  model.notes.push_back(std::to_string(pieces.size()) + " of " +
+                        std::to_string(model.componentCount) +
+                        " pieces of the mesh are inside out: turned");
+}
+
 std::string threeDigits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
@@ -92,6 +106,7 @@ void buildSimulatedSurface(std::span<const Eigen::Vector3f> positions_m,
     throw Error(std::move(issue));
   }
   model.componentCount = numberComponents(model.points_m.size(), model.triangles, model.component);
+  turnInsideOutPieces(model);
 }
 
 void noteOddSize(double scale, RiggedModel& model) {

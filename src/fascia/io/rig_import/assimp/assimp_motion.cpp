@@ -9,6 +9,7 @@
 #include <assimp/scene.h>
 
 #include <fascia/base/error.h>
+#include <fascia/base/suggest.h>
 #include <fascia/io/rig_model/motion_sampling.h>
 #include <fascia/io/rig_model/rig_limits.h>
 
@@ -153,6 +154,9 @@ void sampleMotions(const aiScene& scene, const AssimpNodes& nodes,
     const double frames = std::round(std::min(duration_s, kMaxDuration_s) * kRate_hz);
     spans.push_back({animation.mName.C_Str(), frames / kRate_hz, kRate_hz});
     if (spans.back().name.empty()) spans.back().name = "animation " + std::to_string(a + 1);
+    if (duration_s > kMaxDuration_s)
+      model.notes.push_back("the motion " + quotedName(spans.back().name) +
+                            " is longer than an hour: cut");
   }
   const std::vector<MotionPlan> plans = planMotions(spans, nodeOfJoint.size(), model.notes);
   MotionNames names;

@@ -54,9 +54,7 @@ class AssimpAssembler {
       const aiNode& node = nodes_.node(n);
       for (unsigned m = 0; m < node.mNumMeshes; ++m) addPart(n, *scene_.mMeshes[node.mMeshes[m]]);
     }
-    if (badCorners_ > 0)
-      model_.notes.push_back(std::to_string(badCorners_) +
-                             " triangles name vertices that are not there: left out");
+    noteLeftOut();
     buildSimulatedSurface(positions_m_, weights_, model_);
     sampleMotions(scene_, nodes_, nodeOfJoint_, model_);
     return std::move(model_);
@@ -64,6 +62,7 @@ class AssimpAssembler {
 
  private:
   void addJoints();
+  AssimpFrame placeOf(std::size_t node, const aiMesh& mesh) const;
   std::map<std::size_t, AssimpFrame> bindPoses() const;
   void addMaterial(const aiMaterial& material);
   std::vector<std::uint8_t> pictureOf(const std::string& name) const;
@@ -71,6 +70,7 @@ class AssimpAssembler {
   void addVertices(std::size_t node, const aiMesh& mesh);
   void addTriangles(std::size_t node, const aiMesh& mesh, std::uint32_t firstVertex);
   void addWeights(std::size_t node, const aiMesh& mesh);
+  void noteLeftOut();
   [[noreturn]] void refuse(const std::string& message, const std::string& hint = {}) const;
 
   const aiScene& scene_;
@@ -81,7 +81,8 @@ class AssimpAssembler {
   RiggedModel model_;
   std::vector<Eigen::Vector3f> positions_m_;
   std::vector<PointWeights> weights_;
-  std::size_t pictureBytes_ = 0, badCorners_ = 0;
+  std::size_t pictureBytes_ = 0, badCorners_ = 0, missingPictures_ = 0, morphed_ = 0;
+  std::size_t unskinned_ = 0, loose_ = 0;
 };
 
 void AssimpAssembler::refuse(const std::string& message, const std::string& hint) const {
@@ -92,6 +93,56 @@ void AssimpAssembler::refuse(const std::string& message, const std::string& hint
   throw Error(std::move(issue));
 }
 
+// A bone of a mesh: where its node is, and where the skin says that it is against the mesh.
+struct BoundBone {
+  AssimpFrame world, inMesh, toBone;
+};
+
+// How far bones are from their nodes if the mesh stands at `mesh`, each counting at most 1.
+double misfit(const std::vector<BoundBone>& bones, const AssimpFrame& mesh, double size) {
+  const auto axes = [](const AssimpFrame& frame) -> Mat3 {
+    return frame.linear().colwise().normalized();
+  };
+  double sum = 0;
+  for (const BoundBone& bone : bones) {
+    const AssimpFrame bound = mesh * bone.inMesh;
+    const double off = (bound.translation() - bone.world.translation()).norm() / size +
+                       (axes(bound) - axes(bone.world)).norm();
+    sum += std::min(1.0, std::isfinite(off) ? off : 1.0);
+  }
+  return sum;
+}
+
+// Where a mesh stands in the bind pose: at its node, unless the skin says that it was bound
+// elsewhere or in another size (Collada's bind shape matrix), which brings the bones much nearer to
+// their nodes.
+AssimpFrame AssimpAssembler::placeOf(std::size_t node, const aiMesh& mesh) const {
+  constexpr std::size_t kMostCandidates = 64;
+  constexpr double kSame = 1e-3;        // of the skeleton's size and a unit axis, per bone
+  constexpr double kMuchNearer = 0.25;  // of what is left at the node
+  const AssimpFrame& usual = nodes_.world(node);
+  std::vector<BoundBone> bones;
+  Box box;
+  for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+    const int bone = nodes_.find(mesh.mBones[b]->mName.C_Str());
+    const AssimpFrame toBone = affineOf(mesh.mBones[b]->mOffsetMatrix);
+    if (bone < 0 || !(std::abs(toBone.linear().determinant()) >= 1e-30)) continue;
+    bones.push_back({nodes_.world(static_cast<std::size_t>(bone)), toBone.inverse(), toBone});
+    box.add(bones.back().world.translation());
+  }
+  const double size = box.empty() || !(box.size().norm() > 1e-9) ? 1 : box.size().norm();
+  const double atNode = misfit(bones, usual, size);
+  if (atNode < kSame * static_cast<double>(bones.size())) return usual;
+  AssimpFrame best = usual;
+  double least = kMuchNearer * atNode;
+  for (std::size_t b = 0; b < bones.size(); b += bones.size() / kMostCandidates + 1) {
+    const AssimpFrame candidate = bones[b].world * bones[b].toBone;
+    const double found = misfit(bones, candidate, size);
+    if (found < least) least = found, best = candidate;
+  }
+  return best;
+}
+
 // Where the skins say that their bones are: node -> frame in the world. The first mesh decides.
 std::map<std::size_t, AssimpFrame> AssimpAssembler::bindPoses() const {
   std::map<std::size_t, AssimpFrame> poses;
@@ -99,11 +150,12 @@ std::map<std::size_t, AssimpFrame> AssimpAssembler::bindPoses() const {
     const aiNode& node = nodes_.node(n);
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
       const aiMesh& mesh = *scene_.mMeshes[node.mMeshes[m]];
+      const AssimpFrame place = placeOf(n, mesh);
       for (unsigned b = 0; b < mesh.mNumBones; ++b) {
         const int bone = nodes_.find(mesh.mBones[b]->mName.C_Str());
         const AssimpFrame toBone = affineOf(mesh.mBones[b]->mOffsetMatrix);
         if (bone < 0 || std::abs(toBone.linear().determinant()) < 1e-30) continue;
-        poses.try_emplace(static_cast<std::size_t>(bone), nodes_.world(n) * toBone.inverse());
+        poses.try_emplace(static_cast<std::size_t>(bone), place * toBone.inverse());
       }
     }
   }
@@ -113,6 +165,10 @@ std::map<std::size_t, AssimpFrame> AssimpAssembler::bindPoses() const {
 // Every bone and all that it hangs on, up to the lowest node that holds all of them.
 void AssimpAssembler::addJoints() {
   const std::map<std::size_t, AssimpFrame> poses = bindPoses();
+  if (poses.empty() && scene_.mNumMeshes == 0)
+    refuse("needs a surface: found a skeleton without a mesh",
+           "a motion alone goes onto another character: export it as .bvh or .glb and give it "
+           "with --motion; or export it with its skin");
   if (poses.empty())
     refuse("needs a rig: found a surface without bones",
            "rig it in another program, or take a file that has bones");
@@ -190,6 +246,7 @@ void AssimpAssembler::addMaterial(const aiMaterial& material) {
   for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
     if (out.texture.empty() && material.GetTexture(type, 0, &text) == AI_SUCCESS) {
       out.texture = pictureOf(text.C_Str());
+      if (out.texture.empty()) ++missingPictures_;
     }
   }
   if (out.texture.size() > kMostPictureBytes - pictureBytes_) {
@@ -226,14 +283,30 @@ void AssimpAssembler::addWeights(std::size_t node, const aiMesh& mesh) {
   rigid.weight[0] = 1;
   for (auto& list : influences) {
     PointWeights packed;
-    weights_.push_back(packWeights(list, packed) ? packed : rigid);
+    const bool skinned = packWeights(list, packed);
+    weights_.push_back(skinned ? packed : rigid);
+    if (!skinned && mesh.mNumBones > 0) ++unskinned_;
   }
+  if (mesh.mNumBones == 0) ++loose_;
+}
+
+void AssimpAssembler::noteLeftOut() {
+  const auto note = [&](std::size_t count, const char* text) {
+    if (count > 0) model_.notes.push_back(std::to_string(count) + text);
+  };
+  note(badCorners_, " triangles name vertices that are not there: left out");
+  note(missingPictures_, " pictures are not beside the file, or neither PNG nor JPEG: left out");
+  note(morphed_, " meshes have morph targets: left out");
+  note(unskinned_, " vertices have no weights: moved by the joint that holds their mesh");
+  note(loose_, " meshes without bones move rigidly with the joint above, or with the root");
+  note(scene_.mNumCameras, " cameras are left out");
+  note(scene_.mNumLights, " lights are left out");
 }
 
 void AssimpAssembler::addVertices(std::size_t node, const aiMesh& mesh) {
   if (mesh.mNumVertices > kMostRigVertices - model_.vertices.size())
     refuse("more than " + std::to_string(kMostRigVertices) + " vertices in one character");
-  const AssimpFrame& world = nodes_.world(node);
+  const AssimpFrame world = placeOf(node, mesh);
   const Eigen::Matrix3f toNormal = world.linear().inverse().transpose().cast<float>();
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     const Vec3 place = world * vectorOf(mesh.mVertices[v]).cast<double>();
@@ -255,7 +328,7 @@ void AssimpAssembler::addVertices(std::size_t node, const aiMesh& mesh) {
 
 void AssimpAssembler::addTriangles(std::size_t node, const aiMesh& mesh,
                                    std::uint32_t firstVertex) {
-  const bool mirrored = nodes_.world(node).linear().determinant() < 0;
+  const bool mirrored = placeOf(node, mesh).linear().determinant() < 0;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3) continue;
@@ -274,6 +347,7 @@ void AssimpAssembler::addTriangles(std::size_t node, const aiMesh& mesh,
 
 void AssimpAssembler::addPart(std::size_t node, const aiMesh& mesh) {
   if (mesh.mNumVertices == 0 || (mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return;
+  if (mesh.mNumAnimMeshes > 0) ++morphed_;
   RigPart part;
   part.name = nodes_.node(node).mName.C_Str();
   part.material = static_cast<int>(mesh.mMaterialIndex);

@@ -18,7 +18,7 @@ namespace {
 struct Mended {
   std::size_t notTriangles = 0, withoutPositions = 0, badCorners = 0, badPositions = 0;
   std::size_t badJoints = 0, badSums = 0, badWeights = 0, tooMany = 0, unskinned = 0, morphed = 0;
-  std::size_t hung = 0, loose = 0;
+  std::size_t hung = 0, loose = 0, moving = 0, instanced = 0;
 
   void tell(std::vector<std::string>& notes) const {
     const auto note = [&](std::size_t count, const char* text) {
@@ -35,6 +35,10 @@ struct Mended {
     note(unskinned, " vertices have no weights: moved as the nearest ones that have");
     note(morphed, " primitives have morph targets: kept in the file, their base is simulated");
     note(hung, " meshes without a skin hang on a joint: they move rigidly with it");
+    note(moving, " meshes without a skin move by themselves: each has a joint of its own");
+    note(instanced,
+         " meshes are drawn many times (EXT_mesh_gpu_instancing): kept in the file, one is "
+         "simulated");
     note(loose, " meshes have neither a skin nor a joint above: they move with the root");
   }
 };
@@ -70,10 +74,18 @@ class MeshReader {
   void readMesh(int n) {
     const GltfNode& node = scene_.nodes[at(n)];
     const GltfPlace primitives = document_.root()["meshes"].at(at(node.mesh))["primitives"];
+    const GltfPlace extensions = document_.root()["nodes"].at(at(n))["extensions"];
+    if (extensions["EXT_mesh_gpu_instancing"]) ++mended_.instanced;
     const bool skinned = node.skin >= 0 && !rig_.skins[at(node.skin)].joint.empty();
-    if (!skinned) ++(rig_.carrierOfNode[at(n)] >= 0 ? mended_.hung : mended_.loose);
+    if (!skinned) ++countOf(rig_.carrierOfNode[at(n)]);
     for (std::size_t p = 0; p < primitives.size(); ++p)
       readPrimitive(n, skinned, p, primitives.at(p));
+  }
+
+  // Of meshes without a skin that such a joint carries.
+  std::size_t& countOf(int carrier) {
+    if (carrier < 0) return mended_.loose;
+    return at(carrier) < rig_.skeletonCount ? mended_.hung : mended_.moving;
   }
 
   void readPrimitive(int n, bool skinned, std::size_t index, const GltfPlace& place) {

@@ -1,6 +1,7 @@
 #include <fascia/io/rig_import/gltf/gltf_motions.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
 
 #include <fascia/base/index.h>
@@ -27,6 +28,17 @@ std::vector<int> nodesAboveJoints(const GltfScene& scene, const GltfRig& rig) {
   return above;
 }
 
+// Many exporters write keys of scales that never change.
+bool changesSize(const GltfChannel& channel) {
+  constexpr double kMostChange = 0.01;
+  if (channel.path != GltfChannel::Path::scale) return false;
+  std::size_t key = 0;
+  const Eigen::Vector4d first = channel.valueAt(channel.times_s.front(), key);
+  return std::ranges::any_of(channel.times_s, [&](float time_s) {
+    return (channel.valueAt(time_s, key) - first).norm() > kMostChange * first.norm();
+  });
+}
+
 // Evaluates one clip, time after time.
 class ClipPlayer {
  public:
@@ -43,6 +55,9 @@ class ClipPlayer {
     std::set<int> moved;
     for (const GltfChannel& channel : clip.channels) moved.insert(channel.node);
     moved_.assign(moved.begin(), moved.end());
+    sized_.assign(nodes_.size(), false);
+    for (const GltfChannel& channel : clip.channels)
+      if (changesSize(channel)) sized_[at(channel.node)] = true;
   }
 
   // World frames of all joints.
@@ -60,8 +75,19 @@ class ClipPlayer {
     return joints_;
   }
 
-  std::size_t stretchedCount() const {
-    return static_cast<std::size_t>(std::count(stretched_.begin(), stretched_.end(), true));
+  // For a person: joints whose size the points cannot follow, and why; empty if there are none.
+  std::string stretchNote(const std::string& motion) const {
+    const auto count = std::count(stretched_.begin(), stretched_.end(), true);
+    if (count == 0) return {};
+    const std::string joints = std::to_string(count) + " joints ";
+    const int uneven = unevenNode();
+    if (uneven < 0) return joints + "change their size in " + motion + ": their size is kept";
+    const Vec3 scale = scene_.nodes[at(uneven)].local().linear().colwise().norm();
+    char numbers[96];
+    std::snprintf(numbers, sizeof numbers, "(%.3g, %.3g, %.3g)", scale.x(), scale.y(), scale.z());
+    return joints + "are sheared in " + motion + " by the uneven scale " + numbers +
+           " of the node " + jsonText(scene_.nodes[at(uneven)].name) +
+           ", which is left out of the motion: apply the scale in the program that made the file";
   }
 
  private:
@@ -89,6 +115,22 @@ class ClipPlayer {
     if ((stretch(world) - bind).norm() > 2 * kMostStretch * bind.norm()) stretched_[j] = true;
   }
 
+  // The topmost node whose scale is uneven, of those at or above stretched joints, if the clip
+  // leaves the sizes of all of them alone; -1: none.
+  int unevenNode() const {
+    constexpr double kMostUneven = 1.01;
+    int found = -1;
+    for (std::size_t j = 0; j < stretched_.size(); ++j) {
+      for (int n = stretched_[j] ? rig_.nodeOfJoint[j] : -1; n >= 0;
+           n = scene_.nodes[at(n)].parent) {
+        if (sized_[at(n)]) return -1;
+        const Vec3 size = scene_.nodes[at(n)].local().linear().colwise().norm();
+        if (size.maxCoeff() > kMostUneven * size.minCoeff()) found = n;
+      }
+    }
+    return found;
+  }
+
   const GltfScene& scene_;
   const GltfRig& rig_;
   const GltfClip& clip_;
@@ -99,6 +141,7 @@ class ClipPlayer {
   std::vector<std::size_t> keys_;
   std::vector<Transform> joints_;
   std::vector<bool> stretched_;
+  std::vector<bool> sized_;  // per node: the clip changes its scale
 };
 
 SampledMotion play(ClipPlayer& player, const GltfClip& clip, const MotionPlan& plan,
@@ -139,11 +182,8 @@ void readGltfMotions(const GltfDocument& document, const GltfScene& scene, const
     ClipPlayer player(scene, rig, model, above, clips[i]);
     SampledMotion motion = play(player, clips[i], plans[i], model);
     motion.name = names.next(motion.name);
-    if (player.stretchedCount() > 0) {
-      model.notes.push_back(std::to_string(player.stretchedCount()) +
-                            " joints change their size in " + jsonText(motion.name) +
-                            ": their size is kept");
-    }
+    const std::string stretched = player.stretchNote(jsonText(motion.name));
+    if (!stretched.empty()) model.notes.push_back(stretched);
     model.motions.push_back(std::move(motion));
   }
 }

@@ -76,6 +76,24 @@ bool sayNothing(const RawSkin& skin, const GltfScene& scene) {
   return nodesDiffer;
 }
 
+// Per node: whether an animation moves, turns or sizes it.
+std::vector<bool> animatedNodes(const GltfDocument& document, std::size_t count) {
+  std::vector<bool> animated(count, false);
+  const GltfPlace animations = document.root()["animations"];
+  for (std::size_t a = 0; a < animations.size(); ++a) {
+    const GltfPlace channels = animations.at(a)["channels"];
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const GltfPlace target = channels.at(c)["target"];
+      const double node = target["node"].numberOr(-1);
+      const std::string path = target["path"].textOr("");
+      if (path == "weights" || path == "pointer") continue;
+      if (node >= 0 && node < static_cast<double>(count))
+        animated[static_cast<std::size_t>(node)] = true;
+    }
+  }
+  return animated;
+}
+
 Mat3 axesOf(const Affine& m) {
   return m.linear().colwise().normalized();
 }
@@ -133,6 +151,8 @@ class RigBuilder {
     }
     checkCount();
     if (std::count(parent_.begin(), parent_.end(), -1) > 1) addRoot();
+    rig_.skeletonCount = rig_.nodeOfJoint.size();
+    addMovers();
     for (const int skin : order_) {
       for (const int node : raw_[at(skin)].nodes) {
         rig_.skins[at(skin)].joint.push_back(rig_.jointOfNode[at(node)]);
@@ -141,6 +161,10 @@ class RigBuilder {
   }
 
   void checkCount() const {
+    if (rig_.nodeOfJoint.empty() && document_.root()["meshes"].size() == 0) {
+      document_.root().fail("needs a surface: found no mesh",
+                            "a motion alone goes onto another character: give it with --motion");
+    }
     if (rig_.nodeOfJoint.empty()) {
       document_.root()["skins"].fail(
           "no mesh of the scene has a skin with joints: Fascia needs a rigged character",
@@ -160,6 +184,37 @@ class RigBuilder {
     const auto roots = std::count(parent_.begin(), parent_.end(), 0);
     model_.notes.push_back("the skeleton has " + std::to_string(roots) +
                            " roots: a joint \"fascia_root\" holds them");
+  }
+
+  bool isRigidMesh(int n) const {
+    const GltfNode& node = scene_.nodes[at(n)];
+    return node.inScene && node.mesh >= 0 && (node.skin < 0 || raw_[at(node.skin)].nodes.empty());
+  }
+
+  // Whether animations move a node against the one that is `above` it (-1: against the world).
+  bool movesBelow(int n, int above, const std::vector<bool>& animated) const {
+    for (; n >= 0 && n != above; n = scene_.nodes[at(n)].parent)
+      if (animated[at(n)]) return true;
+    return false;
+  }
+
+  // Meshes without a skin that move by themselves, or stay where they are while the root moves.
+  void addMovers() {
+    const std::vector<bool> animated = animatedNodes(document_, scene_.nodes.size());
+    const bool rootMoves = movesBelow(rig_.nodeOfJoint[0], -1, animated);
+    for (const int n : scene_.order) {
+      int& carrier = rig_.carrierOfNode[at(n)];
+      const int parent = scene_.nodes[at(n)].parent;
+      if (rig_.jointOfNode[at(n)] >= 0) continue;
+      if (parent >= 0) carrier = rig_.carrierOfNode[at(parent)];
+      if (!isRigidMesh(n)) continue;
+      const int above = carrier < 0 ? -1 : rig_.nodeOfJoint[at(carrier)];
+      if (!movesBelow(n, above, animated) && !(carrier < 0 && rootMoves)) continue;
+      parent_.push_back(std::max(carrier, 0));
+      carrier = rig_.jointOfNode[at(n)] = static_cast<int>(rig_.nodeOfJoint.size());
+      rig_.nodeOfJoint.push_back(n);
+    }
+    checkCount();
   }
 
   // How far the joints are from where they should be if the mesh stands at `mesh`: the sum over

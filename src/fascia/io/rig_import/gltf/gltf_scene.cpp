@@ -100,13 +100,57 @@ class TreeWalk {
   std::vector<int> stack_;
 };
 
+// Per node: whether a mesh with a skin that names joints is there or below.
+std::vector<bool> holdsCharacter(const GltfPlace& root, const GltfScene& scene) {
+  std::vector<bool> holds(scene.nodes.size(), false);
+  for (auto n = scene.order.rbegin(); n != scene.order.rend(); ++n) {  // children before parents
+    const auto i = static_cast<std::size_t>(*n);
+    const GltfNode& node = scene.nodes[i];
+    const bool own = node.mesh >= 0 && node.skin >= 0 &&
+                     root["skins"].at(static_cast<std::size_t>(node.skin))["joints"].size() > 0;
+    holds[i] = holds[i] || own;
+    if (holds[i] && node.parent >= 0) holds[static_cast<std::size_t>(node.parent)] = true;
+  }
+  return holds;
+}
+
+bool anyOf(const GltfPlace& scene, const std::vector<bool>& nodes) {
+  const GltfPlace roots = scene["nodes"];
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    const int n = roots.at(i).index(static_cast<int>(nodes.size()));
+    if (nodes[static_cast<std::size_t>(n)]) return true;
+  }
+  return false;
+}
+
+// The default scene, or, if there is no character in it, the first that has one.
+std::size_t sceneToShow(const GltfPlace& root, const GltfScene& scene) {
+  const GltfPlace scenes = root["scenes"];
+  const auto usual =
+      static_cast<std::size_t>(root["scene"].indexOr(0, static_cast<int>(scenes.size())));
+  const std::vector<bool> holds = holdsCharacter(root, scene);
+  if (anyOf(scenes.at(usual), holds)) return usual;
+  for (std::size_t s = 0; s < scenes.size(); ++s)
+    if (anyOf(scenes.at(s), holds)) return s;
+  return usual;
+}
+
+std::string sceneText(const GltfPlace& scenes, std::size_t index) {
+  const std::string name = scenes.at(index)["name"].textOr("");
+  return "scene " + std::to_string(index) + (name.empty() ? "" : " (" + jsonText(name) + ")");
+}
+
 // Files without scenes show everything.
-void markShown(const GltfDocument& document, GltfScene& scene) {
+void markShown(const GltfDocument& document, GltfScene& scene, std::vector<std::string>& notes) {
   const GltfPlace root = document.root(), scenes = root["scenes"];
   const bool all = scenes.size() == 0;
   if (!all) {
-    const int shown = root["scene"].indexOr(0, static_cast<int>(scenes.size()));
-    const GltfPlace roots = scenes.at(static_cast<std::size_t>(shown))["nodes"];
+    const std::size_t shown = sceneToShow(root, scene), usual = root["scene"].countOr(0);
+    if (shown != usual)
+      notes.push_back("the default " + sceneText(scenes, usual) +
+                      " has no skinned mesh: " + sceneText(scenes, shown) + " is taken");
+    scene.shown = static_cast<int>(shown);
+    const GltfPlace roots = scenes.at(shown)["nodes"];
     for (std::size_t i = 0; i < roots.size(); ++i) {
       const int n = roots.at(i).index(static_cast<int>(scene.nodes.size()));
       scene.nodes[static_cast<std::size_t>(n)].inScene = true;
@@ -146,7 +190,7 @@ GltfScene GltfScene::of(const GltfDocument& document, double scale,
     notes.push_back(std::to_string(mended) + " nodes have transforms that are no numbers: ignored");
   }
   TreeWalk(nodes, scene, notes).run();
-  markShown(document, scene);
+  markShown(document, scene, notes);
   std::vector<Affine> local;
   for (const GltfNode& node : scene.nodes) local.push_back(node.local());
   scene.rest_world.resize(local.size());

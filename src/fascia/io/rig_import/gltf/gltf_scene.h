@@ -29,10 +29,12 @@ struct GltfNode {
 struct GltfScene {
   std::vector<GltfNode> nodes;
   std::vector<int> order;          // parents before children, as the file lists them
+  int shown = -1;                  // the scene that is shown; -1: the file has none
   double scale = 1;                // from the file's unit to metres
   std::vector<Affine> rest_world;  // per node, in metres
 
-  // Throws Error for trees that are none; notes what was mended.
+  // The default scene is shown, unless there is a character in another one only. Throws Error for
+  // trees that are none; notes what was mended.
   static GltfScene of(const GltfDocument& document, double scale, std::vector<std::string>& notes);
 
   // World matrices of some nodes, parents first, from local ones (both per node).
