@@ -24,12 +24,19 @@ def percent(share):
 
 def paper(results):
     head = ["character", "solver", "paper, × real time", "ours", "ratio", "step, ms", "forces %",
-            "constraints %"]
-    return table(head, [[
-        r["character"], r["integrator"], f"{r['paper_realtime_ratio']:.3f}",
-        f"{r['realtime_ratio']:.1f}", f"{r['speedup']:.0f}",
-        f"{1e3 * r['step_min_s']:.2f}–{1e3 * r['step_max_s']:.2f}", percent(r["share_forces"]),
-        percent(r["share_constraints"])] for r in results])
+            "constraints %", "longest edge, ×", "deepest, mm", "put back"]
+
+    def row(r):
+        if "refused" in r:
+            return [r["character"], r["integrator"], "", "refused: " + r["refused"]] + 7 * [""]
+        return [r["character"], r["integrator"], f"{r['paper_realtime_ratio']:.3f}",
+                f"{r['realtime_ratio']:.1f}", f"{r['speedup']:.0f}",
+                f"{1e3 * r['step_min_s']:.2f}–{1e3 * r['step_max_s']:.2f}",
+                percent(r["share_forces"]), percent(r["share_constraints"]),
+                f"{r['max_edge_stretch']:.2f}", f"{1e3 * r['max_penetration_m']:.4f}",
+                f"{r['repaired_points']:.0f}"]
+
+    return table(head, [row(r) for r in results])
 
 
 def scaling(results):

@@ -134,16 +134,16 @@ TEST_F(CliTrust, NamesMoveNoCursor) {
     for (nlohmann::json& primitive : mesh["primitives"]) primitive["material"] = 0;
   for (nlohmann::json& motion : rig["animations"]) motion["name"] = "\x1b]0;title\x07";
   write("odd.gltf", rig.dump());
-  const Outcome text = run({"info", "odd.gltf"}), json = run({"info", "odd.gltf", "--json"});
+  const Outcome text = run({"info", "odd.gltf"}), answer = run({"info", "odd.gltf", "--json"});
   const Outcome usage = run({"info", "no\x1b[2J\n.gltf"});
-  for (const Outcome* outcome : {&text, &json, &usage})
+  for (const Outcome* outcome : {&text, &answer, &usage})
     for (const std::string* stream : {&outcome->out, &outcome->err}) {
       EXPECT_THAT(*stream, Not(HasSubstr("\x1b")));
       EXPECT_THAT(*stream, Not(HasSubstr("\xc2\x9b")));
       EXPECT_THAT(*stream, Not(HasSubstr("\nerror: forged")));
     }
   EXPECT_THAT(text.out, HasSubstr("\\x1b[2J\\nerror: forged\\x9b"));
-  EXPECT_EQ(json.json().at("rig_materials").at(0).at("name"), "a\x1b[2J\nerror: forged\xc2\x9b");
+  EXPECT_EQ(answer.json().at("rig_materials").at(0).at("name"), "a\x1b[2J\nerror: forged\xc2\x9b");
 }
 
 TEST_F(CliTrust, FaultsNameTheirFiles) {

@@ -215,7 +215,7 @@ TEST(Forked, WorkThatHangsIsEnded) {
 }
 
 TEST(Forked, WorkTellsWhatItFound) {
-  const auto tell = [](int out) { return write(out, "found", 5) == 5; };
+  const auto tell = [](int out) { return ::write(out, "found", 5) == 5; };
   const ForkResult result = runForked(tell, 100, 60);
   EXPECT_EQ(result.bytes, "found");
   EXPECT_TRUE(result.succeeded);
