@@ -14,50 +14,50 @@ namespace fascia {
 // follows from them is left out: frames of joints and solids; and scratch memory.
 
 template <class T, class U>
-concept Is = std::same_as<std::remove_const_t<T>, U>;
+concept IsA = std::same_as<std::remove_const_t<T>, U>;
 
 template <class Visit>
-void eachMember(Is<VectorArray> auto& a, Visit& visit) {
+void eachMember(IsA<VectorArray> auto& a, Visit& visit) {
   visit(a.x), visit(a.y), visit(a.z);
 }
 
 template <class Visit>
-void eachMember(Is<Transform> auto& t, Visit& visit) {
+void eachMember(IsA<Transform> auto& t, Visit& visit) {
   visit(t.rotation), visit(t.translation_m);
 }
 
 template <class Visit>
-void eachMember(Is<JointRotation> auto& r, Visit& visit) {
+void eachMember(IsA<JointRotation> auto& r, Visit& visit) {
   visit(r.joint.value), visit(r.rotation.coeffs()), visit(r.angular_rad_per_s);
 }
 
 template <class Visit>
-void eachMember(Is<Flesh::ParameterOverride> auto& p, Visit& visit) {
+void eachMember(IsA<Flesh::ParameterOverride> auto& p, Visit& visit) {
   visit(p.solid.value), visit(p.parameter), visit(p.value), visit(p.rate);
   visit(p.weight), visit(p.weightRate_per_s);
 }
 
 template <class Visit>
-void eachMember(Is<JiggleState> auto& j, Visit& visit) {
+void eachMember(IsA<JiggleState> auto& j, Visit& visit) {
   visit(j.offset), visit(j.velocity), visit(j.place), visit(j.placeVelocity);
   visit(j.origin_m), visit(j.frames);
 }
 
 template <class Visit>
-void eachMember(Is<PointSurroundings> auto& s, Visit& visit) {
+void eachMember(IsA<PointSurroundings> auto& s, Visit& visit) {
   visit(s.anchor), visit(s.anchorVelocity), visit(s.normal), visit(s.fleshVelocity);
   visit(s.offset), visit(s.fleshNormal);
 }
 
 template <class Visit>
-void eachMember(Is<SkinState> auto& s, Visit& visit) {
+void eachMember(IsA<SkinState> auto& s, Visit& visit) {
   visit(s.position), visit(s.velocity), visit(s.surroundings), visit(s.coarseVelocity);
   visit(s.coarse), visit(s.joints), visit(s.jiggle), visit(s.maxSpeed_m_per_s);
   visit(s.odeStep_s), visit(s.ready), visit(s.starting);
 }
 
 template <class Visit>
-void eachMember(Is<CharacterState> auto& s, Visit& visit) {
+void eachMember(IsA<CharacterState> auto& s, Visit& visit) {
   visit(s.time_s), visit(s.posture.values), visit(s.posture.rates), visit(s.posture.rotations);
   visit(s.bodies.t_s), visit(s.bodies.r), visit(s.bodies.v);
   visit(s.held), visit(s.sampled.parameters), visit(s.skin);
@@ -70,11 +70,11 @@ concept FixedMatrix = requires {
 }
 &&(T::SizeAtCompileTime > 0);
 template <class T>
-concept List = requires(T& list) {
+concept GrowingList = requires(T& list) {
   list.emplace_back();
 };
 template <class T>
-concept Flat = std::is_arithmetic_v<T> || FixedMatrix<T>;
+concept FlatValue = std::is_arithmetic_v<T> || FixedMatrix<T>;
 
 class StateWriter {
  public:
@@ -86,7 +86,7 @@ class StateWriter {
       out_.value(value);
     } else if constexpr (FixedMatrix<T>) {
       out_.array(value.data(), static_cast<std::size_t>(value.size()));
-    } else if constexpr (List<T>) {
+    } else if constexpr (GrowingList<T>) {
       out_.value(static_cast<std::uint64_t>(value.size()));
       list(value);
     } else {
@@ -97,7 +97,7 @@ class StateWriter {
  private:
   template <class T>
   void list(const T& values) {
-    if constexpr (Flat<typename T::value_type>)
+    if constexpr (FlatValue<typename T::value_type>)
       out_.array(values.data(), values.size());
     else
       for (const auto& value : values) (*this)(value);
@@ -122,7 +122,7 @@ class StateReader {
       requireFinite(value);
     } else if constexpr (FixedMatrix<T>) {
       for (Eigen::Index i = 0; i < value.size(); ++i) (*this)(value.data()[i]);
-    } else if constexpr (List<T>) {
+    } else if constexpr (GrowingList<T>) {
       list(value, in_.value<std::uint64_t>());
     } else {
       eachMember(value, *this);
@@ -135,7 +135,7 @@ class StateReader {
   template <class T>
   void list(T& values, std::uint64_t count) {
     using Value = typename T::value_type;
-    if constexpr (Flat<Value>) {
+    if constexpr (FlatValue<Value>) {
       in_.array(values, count);
       for (const Value& value : values) requireFinite(value);
     } else {
