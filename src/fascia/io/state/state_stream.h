@@ -106,7 +106,7 @@ class StateWriter {
   ByteWriter& out_;
 };
 
-// Takes nothing but finite numbers, and no more than there are bytes for.
+// Takes nothing but numbers that a character may have, and no more than there are bytes for.
 class StateReader {
  public:
   explicit StateReader(ByteReader& in) : in_(in) {}
@@ -119,7 +119,7 @@ class StateReader {
       value = byte != 0;
     } else if constexpr (std::is_arithmetic_v<T>) {
       value = in_.value<T>();
-      requireFinite(value);
+      requireReal(value);
     } else if constexpr (FixedMatrix<T>) {
       for (Eigen::Index i = 0; i < value.size(); ++i) (*this)(value.data()[i]);
     } else if constexpr (GrowingList<T>) {
@@ -130,6 +130,9 @@ class StateReader {
   }
 
  private:
+  // In SI units. Squares of it and their products are floats still, so that what goes on from any
+  // of them stays finite or is repaired.
+  static constexpr float kLargest = 1e9f;
   static constexpr int kDeepest = 4;  // coarse skins of coarse skins; more than there are
 
   template <class T>
@@ -137,7 +140,7 @@ class StateReader {
     using Value = typename T::value_type;
     if constexpr (FlatValue<Value>) {
       in_.array(values, count);
-      for (const Value& value : values) requireFinite(value);
+      for (const Value& value : values) requireReal(value);
     } else {
       if (std::same_as<Value, SkinState> && ++depth_ > kDeepest) in_.fail("has too many skins");
       for (std::uint64_t i = 0; i < count; ++i) (*this)(values.emplace_back());
@@ -145,13 +148,14 @@ class StateReader {
   }
 
   template <class T>
-  void requireFinite(const T& value) const {
-    bool finite = true;
+  void requireReal(const T& value) const {
+    bool real = true;
     if constexpr (FixedMatrix<T>)
-      finite = value.allFinite();
+      real = value.allFinite() && value.cwiseAbs().maxCoeff() <= kLargest;
     else if constexpr (std::is_floating_point_v<T>)
-      finite = std::isfinite(value);
-    if (!finite) in_.fail("holds a value that is not a finite number");
+      real = std::abs(value) <= kLargest;  // false for NaN
+    if (!real)
+      in_.fail("holds a value that is no number or larger than any of a running character");
   }
 
   ByteReader& in_;
