@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -9,8 +10,10 @@
 #include <fascia/io/cache/pc2.h>
 #include <fascia/io/documents/scene_file.h>
 #include <fascia/io/documents/stats_writer.h>
+#include <fascia/io/file/inputs.h>
 #include <fascia/io/glb_export/gltf_writer.h>
 #include <fascia/io/rig_export/rig_writer.h>
+#include <fascia/io/state/state_file.h>
 
 #include "commands.h"
 #include "example_files.h"
@@ -21,6 +24,7 @@
 #include "scene_bake.h"
 #include "shell_word.h"
 #include "simulation_options.h"
+#include "state_files.h"
 #include "takes.h"
 
 namespace fascia {
@@ -54,6 +58,8 @@ Examples:
   fascia bake examples/penguin.fascia.json --motions all --targets 32 -o penguin_all.glb
   fascia bake examples/sky-hook.fascia.json --seed 7 -o sky-hook.glb -o sky-hook.fcache
   fascia bake examples/penguin.fascia.json --motion waddle -o waddle.fcache --stats waddle.json
+  fascia bake examples/penguin.fascia.json --duration 3 -o a.glb --save-state a.fstate
+  fascia bake examples/penguin.fascia.json --from-state a.fstate -o b.glb
   fascia bake examples/penguin.fascia.json --grid 128x64 --fps 30 -o fine.pc2)";
 
 struct BakeOptions {
@@ -63,6 +69,7 @@ struct BakeOptions {
   TakeOptions takes;
   SimulationOptions simulation;
   RigBakeOptions rig;
+  StateFiles states;
 };
 
 // What a bake has made so far.
@@ -149,13 +156,17 @@ void checkFiles(const Cast& cast, const BakeOptions& options) {
   if (!options.stats.empty())
     for (std::size_t k = 1; k < cast.takes.size(); ++k)
       files.push_back(fileOf(options.stats, cast.takes, k));
+  if (!options.states.save.empty()) files.push_back(options.states.save);
+  if (!options.states.from.empty()) noteInput(options.states.from);
   checkOverwriting(files, options.stats.empty() ? "" : fileOf(options.stats, cast.takes, 0));
 }
 
 std::vector<Shot> shootAll(const Cast& cast, const BakeOptions& options, const Console& console) {
+  const std::optional<CharacterState> from =
+      stateToGoOnFrom(options.states, cast, options.simulation);
   std::vector<Shot> shots;
   for (const Take& take : cast.takes) {
-    shots.push_back(shoot(cast, take, options.simulation, console));
+    shots.push_back(shoot(cast, take, options.simulation, console, from ? &*from : nullptr));
     if (!take.cycle) continue;
     console.detail(fmt::format("{}: a cycle; its ends were {:.2g} mm apart, and meet now",
                                take.motion, 1e3 * shots.back().gap_m));
@@ -164,7 +175,9 @@ std::vector<Shot> shootAll(const Cast& cast, const BakeOptions& options, const C
 }
 
 void bakeCharacter(BakeOptions& options, const Console& console) {
+  requireOnePlainMotion(options.states, options.takes);
   const Cast cast = prepareCast(options.file, options.takes, options.simulation, console);
+  requireOneTake(options.states, cast);
   checkRigBake(cast.character, options.rig, options.outputs);
   checkVrm(cast.def.rig && options.rig.as != "cache" ? cast.def.rig->model.get() : nullptr,
            options.outputs);
@@ -173,6 +186,11 @@ void bakeCharacter(BakeOptions& options, const Console& console) {
   Made made;
   for (const std::string& path : options.outputs) {
     writeOutput(cast, shots, path, options, console, made);
+  }
+  if (!options.states.save.empty()) {
+    writeStateFile(cast.character, shots.front().last, options.states.save);
+    made.written.push_back(options.states.save);
+    console.say("wrote " + options.states.save);
   }
   std::vector<const Recording*> recordings;
   for (std::size_t k = 0; k < shots.size(); ++k) {
@@ -200,12 +218,16 @@ void bakeFile(BakeOptions& options, const Console& console) {
   if (!options.rig.given().empty()) throw Error("--as and its options are for characters on a rig");
   if (!options.takes.motions.empty() || !options.takes.all.empty() || !options.takes.loop.empty())
     throw Error("--motion, --motions and --loop are for characters; a scene has its own");
+  if (options.states.any())
+    throw Error(
+        "--save-state and --from-state are for characters; the state of a scene, with its "
+        "script, cannot be saved");
   bakeScene({options.file, options.outputs, options.stats, options.simulation}, console);
 }
 
 void bake(BakeOptions& options, const Console& console) {
   checkFolders(options.outputs);
-  checkFolders({options.stats});
+  checkFolders({options.stats, options.states.save});
   checkOverwriting(options.outputs, options.stats);
   const ThreadLimit threads(options.simulation.threads);
   withInput(options.file, {.command = "bake", .character = true, .scene = true},
@@ -237,6 +259,7 @@ void addBake(CLI::App& program, Console& console) {
   options->rig.addTo(command);
   options->takes.addTo(command);
   options->simulation.addTo(command);
+  options->states.addTo(command);
   console.addFlags(command);
   console.addVerboseFlag(command);
   command.footer(kBakeFooter);

@@ -225,11 +225,13 @@ Cast prepareCast(const std::string& path, const TakeOptions& takes, SimulationOp
 }
 
 Shot shoot(const Cast& cast, const Take& take, const SimulationOptions& options,
-           const Console& console) {
+           const Console& console, const CharacterState* from) {
+  Shot shot;
   RecordOptions record;
   record.frame_rate_hz = options.frame_rate_hz;
   record.duration_s = options.duration_s;
-  Shot shot;
+  record.from = from;
+  record.last = &shot.last;
   const std::string what = cast.takes.size() > 1 ? "simulating " + take.motion : "simulating";
   if (!take.cycle) {
     shot.recording = simulate(cast.character, take.played, record, console, what);

@@ -47,9 +47,11 @@ struct Shot {
   // World frames of the rig's joints in every frame; empty without a rig.
   std::vector<std::vector<Transform>> joints_world;
   double gap_m = 0;  // of a cycle: how far its ends were apart before they were closed
+  CharacterState last;
 };
+// Goes on from the state `from`, if one is given: not for cycles.
 Shot shoot(const Cast& cast, const Take& take, const SimulationOptions& options,
-           const Console& console);
+           const Console& console, const CharacterState* from = nullptr);
 
 // Where a motion's own file goes: "fox.glb" as it is for a single one, else "fox.Walk.glb".
 std::string fileOf(const std::string& path, const std::vector<Take>& takes, std::size_t take);

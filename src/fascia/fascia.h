@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fascia/character/recording.h>
+#include <fascia/io/state/state_file.h>
 #include <fascia/render/pixels.h>
 #include <fascia/track/blend_source.h>
 #include <fascia/track/drag_source.h>

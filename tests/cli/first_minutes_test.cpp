@@ -187,7 +187,11 @@ class Examples : public FirstMinutes {
     }
     const bool simulates =
         command == "bake" || (command == "render" && !words[1].ends_with(".fcache"));
-    if (simulates && !has("--time")) words.insert(words.end(), {"--duration", "0.05"});
+    const auto duration = std::find(words.begin(), words.end(), "--duration");
+    if (duration != words.end())
+      *(duration + 1) = "0.05";
+    else if (simulates && !has("--time"))
+      words.insert(words.end(), {"--duration", "0.05"});
     if (command == "render" || command == "compare") {
       if (!has("--size")) words.insert(words.end(), {"--size", "320x180"});
     }

@@ -99,6 +99,17 @@ TEST(Cache, ComesBackExactly) {
   EXPECT_EQ(out.state_hash, in.state_hash);
 }
 
+TEST(Cache, HoldsNoTimesThatWereMeasured) {
+  const CharacterDef def = readCharacterText(sample::kFull).def;
+  Recording slow = sample::tube(3, 6);
+  const std::string bytes = cacheBytes(def, slow);
+  slow.wall_s = 9;
+  slow.stats.forces_s = slow.stats.constraints_s = slow.stats.other_s = 5;
+  EXPECT_TRUE(cacheBytes(def, slow) == bytes);
+  slow.stats.steps += 1;
+  EXPECT_FALSE(cacheBytes(def, slow) == bytes);
+}
+
 TEST(Cache, KeepsTheShapesOfSoftSolids) {
   const sample::Folder folder;
   const CharacterDef def = readCharacterText(sample::kFull).def;

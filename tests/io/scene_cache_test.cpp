@@ -111,6 +111,13 @@ TEST_F(SceneCacheTest, WhatIsReadHasTheSameBits) {
   EXPECT_EQ(cache.recording.simulated_s, recording.simulated_s);
 }
 
+TEST_F(SceneCacheTest, HoldsNoTimesThatWereMeasured) {
+  StageRecording slow = written().recording;
+  slow.wall_s += 9;
+  slow.characters[0].stats.other_s += 9;
+  EXPECT_TRUE(bytesOf(written().stage, slow) == written().bytes);
+}
+
 TEST_F(SceneCacheTest, TheStageComesBackWithItsCharactersAndMeshes) {
   const SceneCache cache = parseSceneCache(written().bytes);
   const SceneDef &def = written().stage.def(), &back = cache.stage.def();

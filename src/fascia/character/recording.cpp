@@ -1,9 +1,11 @@
 #include <fascia/character/recording.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include <fascia/base/assert.h>
+#include <fascia/character/editing.h>
 
 namespace fascia {
 
@@ -40,16 +42,28 @@ void finishRecording(const Character& character, const CharacterState& last, Rec
   out.state_hash = hashOf(character, last);
 }
 
+namespace {
+
+CharacterState firstState(const Character& character, const PostureSource& source,
+                          const CharacterState* from) {
+  if (!from) return initialState(character, source);
+  requireFits(character, *from);
+  return *from;
+}
+
+}  // namespace
+
 Recording record(const Character& character, const PostureSource& source,
                  const RecordOptions& options) {
   const double frameRate_hz =
       options.frame_rate_hz > 0 ? options.frame_rate_hz : character.def().simulation.frame_rate_hz;
   Recording out = startRecording(source, frameRate_hz);
-  const double duration = options.duration_s > 0 ? options.duration_s : source.info().duration_s;
+  CharacterState state = firstState(character, source, options.from);
+  const double left_s = std::max(0.0, source.info().duration_s - state.time_s);
+  const double duration = options.duration_s > 0 ? options.duration_s : left_s;
   const double dt = 1 / frameRate_hz;
   const auto frames = static_cast<std::int64_t>(std::llround(duration * frameRate_hz));
 
-  CharacterState state = initialState(character, source);
   const auto keep = [&] {
     keepFrame(character, state, state.time_s + 0.5 * dt >= options.start_s, out);
   };
@@ -65,6 +79,7 @@ Recording record(const Character& character, const PostureSource& source,
       throw Error("stopped");
   }
   finishRecording(character, state, out);
+  if (options.last) *options.last = std::move(state);
   return out;
 }
 

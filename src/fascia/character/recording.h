@@ -36,13 +36,16 @@ void finishRecording(const Character& character, const CharacterState& last, Rec
 
 struct RecordOptions {
   double frame_rate_hz = 0;  // 0 = as in the file
-  double duration_s = 0;     // 0 = the source's
+  double duration_s = 0;     // 0 = the source's, or what is left of it after `from`
   double start_s = 0;        // frames before this are simulated, but not kept
+  // The run goes on from this state, which is its first frame; nullptr: from the initial one.
+  const CharacterState* from = nullptr;
+  CharacterState* last = nullptr;  // becomes the state at the end, if given
   // Called after every frame with the fraction done; false stops (recording is then discarded).
   std::function<bool(double)> progress;
 };
 
-// Throws Error("stopped") when progress asked to stop.
+// Throws Error("stopped") when progress asked to stop, and if `from` is not of this character.
 Recording record(const Character& character, const PostureSource& source,
                  const RecordOptions& options = {});
 

@@ -1,5 +1,7 @@
 #include <fascia/skin/carry_over.h>
 
+#include <algorithm>
+#include <initializer_list>
 #include <memory>
 #include <utility>
 
@@ -159,16 +161,40 @@ SkinState carryOver(const Skin& from, SkinState state, const Skin& to, const Ski
   return out;
 }
 
+namespace {
+
+bool allSized(std::size_t count, std::initializer_list<const VectorArray*> arrays) {
+  return std::ranges::all_of(arrays, [&](const VectorArray* a) {
+    return a->x.size() == count && a->y.size() == count && a->z.size() == count;
+  });
+}
+
+bool isWhole(const JiggleState& jiggle) {
+  const std::size_t count = jiggle.offset.size();
+  return jiggle.velocity.size() == count && jiggle.place.size() == count &&
+         jiggle.placeVelocity.size() == count;
+}
+
+}  // namespace
+
 const char* misfit(const Skin& skin, const SkinState& state) {
   const std::size_t storage = skin.topology().storage();
-  if (state.position.size() != storage) return "positions";
+  const PointSurroundings& around = state.surroundings;
+  if (!allSized(storage, {&state.position})) return "positions";
+  if (!allSized(storage, {&state.velocity})) return "velocities";
+  if (!isWhole(state.jiggle)) return "jiggle";
+  if (!around.fleshNormal.x.empty() && !allSized(storage, {&around.fleshNormal}))
+    return "surroundings";
   if (!skin.isSimulated() || !state.ready) return nullptr;
-  if (state.velocity.size() != storage) return "velocities";
-  if (state.surroundings.anchor.size() != storage || state.surroundings.offset.size() != storage)
+  if (!allSized(storage,
+                {&around.anchor, &around.anchorVelocity, &around.normal, &around.fleshVelocity}) ||
+      around.offset.size() != storage)
     return "surroundings";
   const bool rides = skin.coarse() && skin.settings().integrator == "auto";
   if (!rides) return nullptr;
-  if (state.coarse.size() != 1 || state.coarseVelocity.size() != storage) return "coarse grid";
+  if (state.coarse.size() != 1 || !state.coarse.front().ready ||
+      !allSized(storage, {&state.coarseVelocity}))
+    return "coarse grid";
   return misfit(*skin.coarse(), state.coarse.front());
 }
 

@@ -15,7 +15,8 @@ namespace {
 // Layout, little-endian: magic, u32 version; texts (u64 length, bytes): character file, texture,
 // motion; the rig if the character has one (version 2 and later); how many numbers the soft solids'
 // shapes are (version 3); rate, loop; the mesh; per frame time, posture, shapes, positions as
-// float32; stats.
+// float32; stats, without how long anything took, so that equal runs give equal files: zeros stand
+// there, for programs that expect a number.
 constexpr std::string_view kCacheMagic("FCACHE\x1a\n", 8);
 constexpr std::uint32_t kPlainVersion = 1, kRigVersion = 2, kSoftVersion = 3;
 constexpr std::size_t kMaxCacheBytes = std::size_t{8} << 30;
@@ -144,8 +145,10 @@ void putCache(const CharacterDef& def, const Recording& recording, const Texture
     put(out.bytes);
   }
   ByteWriter tail;
-  eachSkinStat(recording.stats, [&](const auto& value) { tail.value(value); });
-  tail.value(recording.wall_s);
+  SkinStats untimed = recording.stats;
+  untimed.forces_s = untimed.constraints_s = untimed.other_s = 0;
+  eachSkinStat(untimed, [&](const auto& value) { tail.value(value); });
+  tail.value(0.0);  // wall_s
   tail.value(recording.simulated_s);
   tail.value(recording.state_hash);
   put(tail.bytes);

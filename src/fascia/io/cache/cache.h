@@ -15,7 +15,8 @@ struct Cache {
   Recording recording;
 };
 
-// Exact: readCache(writeCache(x)) has the same bits. Both throw Error. Writing takes the texture
+// Exact: readCache(writeCache(x)) has the same bits, but for times that were measured: those are
+// not written, so that equal runs give equal files. Both throw Error. Writing takes the texture
 // from the character's folder unless one is given.
 void writeCache(const CharacterDef& def, const Recording& recording, const std::string& path,
                 const Texture* texture = nullptr);

@@ -17,7 +17,7 @@ struct SceneCache {
   StageRecording recording;
 };
 
-// Exact: what is read has the same bits. Both throw Error.
+// Exact: what is read has the same bits, but for the time that it took. Both throw Error.
 void writeSceneCache(const Stage& stage, const StageRecording& recording, const std::string& path);
 SceneCache parseSceneCache(std::string_view bytes, const std::string& file = {});
 bool isSceneCache(std::string_view bytes);  // by its first bytes
