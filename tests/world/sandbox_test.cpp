@@ -55,8 +55,7 @@ TEST(Sandbox, ReadsTextWithAByteOrderMark) {
 TEST(Sandbox, StopsARunThatTakesTooMuchInAll) {
   ScriptLimits limits;
   limits.instructions = 200'000;
-  const Issue issue =
-      issueOf("while true do for i = 1, 10000 do end wait(0.001) end", limits);
+  const Issue issue = issueOf("while true do for i = 1, 10000 do end wait(0.001) end", limits);
   EXPECT_NE(issue.message.find("200000 instructions in all"), std::string::npos) << issue.message;
   EXPECT_EQ(issueOf("while true do for i = 1, 10000 do end wait(0.5) end", limits).message, "");
 }

@@ -10,8 +10,8 @@
 
 namespace fascia {
 
-// A picture made ready for drawing; null if there is none. Throws Error if it cannot be read, at the
-// texture of the character file `owner` where that is known.
+// A picture made ready for drawing; null if there is none. Throws Error if it cannot be read, at
+// the texture of the character file `owner` where that is known.
 std::shared_ptr<const Pixels> toPixels(const Texture& texture, const std::string& owner = {});
 
 // The decoded pictures of an imported character's materials; null if it has no rig. One that cannot

@@ -177,6 +177,7 @@ UnpackedPrimitive unpackPrimitive(const GltfDocument& document, const GltfPlace&
     if (id.key.starts_with("WEIGHTS_") && fourFloats) weights.push_back(out.attributes.size() - 1);
   }
   std::vector<Attribute*> sets;
+  sets.reserve(weights.size());
   for (const std::size_t i : weights) sets.push_back(&out.attributes[i]);
   if (!sets.empty()) evenWeights(sets, mesh->num_points());
   out.indices = faceIndices(*mesh);

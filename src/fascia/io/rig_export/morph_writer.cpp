@@ -51,6 +51,7 @@ class MorphWriter {
       leftOut_ += animations.back().leftOut;
     }
     std::vector<RigPlayer> before;  // the file's own targets keep what animations did with them
+    before.reserve(animations.size());
     for (const BakedAnimation& animation : animations)
       before.emplace_back(source_.document, model_.parts, animation.index, source_.scale, 0);
     // A mesh's weights are its node's: told by its first part.

@@ -184,8 +184,8 @@ std::vector<StretchLimit::Edge> TriangleMembrane::edges(float stretch) const {
   }
   const auto ends = [](const StretchLimit::Edge& e) { return std::pair(e.a, e.b); };
   std::ranges::stable_sort(edges, {}, ends);
-  const auto rest = std::ranges::unique(edges, {}, ends);
-  edges.erase(rest.begin(), rest.end());
+  const auto same = [&](const auto& a, const auto& b) { return ends(a) == ends(b); };
+  edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
   return edges;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include <fascia/math/points.h>
 
@@ -55,8 +54,8 @@ bool StretchLimit::exceeded(const VectorArray& position, float share) const {
 void StretchLimit::sweep(const Level& level, const PointModel& points, VectorArray& position,
                          VectorArray& velocity) const {
   for (const Edge& edge : level.edges) shorten(edge, points, position, velocity);
-  for (const Edge& edge : std::views::reverse(level.edges))
-    shorten(edge, points, position, velocity);
+  for (auto edge = level.edges.rbegin(); edge != level.edges.rend(); ++edge)
+    shorten(*edge, points, position, velocity);
 }
 
 void StretchLimit::shorten(const Edge& edge, const PointModel& points, VectorArray& position,

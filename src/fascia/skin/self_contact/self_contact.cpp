@@ -340,7 +340,7 @@ void SelfContact::findFaceDown(const PointModel& points, const VectorArray& fles
     }
   }
   std::ranges::sort(faceDown_);
-  faceDown_.erase(std::ranges::unique(faceDown_).begin(), faceDown_.end());
+  faceDown_.erase(std::unique(faceDown_.begin(), faceDown_.end()), faceDown_.end());
   std::erase_if(faceDown_, [&](std::uint32_t k) { return points.free[k] == 0; });
 }
 
