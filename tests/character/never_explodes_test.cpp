@@ -178,6 +178,43 @@ TEST(NeverExplodes, WithExtremeMaterials) {
   }
 }
 
+// Two capsules end to end: in the crease there is less room than skin.
+CharacterDef limb(int columns, int rows, double bend) {
+  CharacterDef def;
+  def.skeleton.joints.resize(2);
+  def.skeleton.joints[0].name = "upper";
+  JointDef& elbow = def.skeleton.joints[1];
+  elbow.name = "elbow", elbow.parent = "upper";
+  elbow.offset_m = Vec3(0, 0.3, 0);
+  elbow.dofs = {{Dof::rx, 0, bend}};
+  for (const char* joint : {"upper", "elbow"}) {
+    FleshSolidDef& solid = def.flesh.solids.emplace_back();
+    solid.name = std::string(joint) + " flesh", solid.joint = joint;
+    solid.solid = {"capsule", {0.03, 0.12}, {}};
+    solid.position_m = Vec3(0, 0.15, 0);
+    solid.orientation_rad = Vec3(kPi / 2, 0, 0);
+  }
+  SkinDef& skin = def.skin.emplace();
+  skin.columns = columns, skin.rows = rows;
+  skin.bottom = {"upper", Vec3(0, 0.1, 0), Vec3(0, -1, 0), 0};
+  skin.top = {"elbow", Vec3(0, 0.2, 0), Vec3(0, 1, 0), 0};
+  skin.fat.thickness_m = 0.01;
+  skin.contact.self = true;
+  def.motions = {{"bend", 2, false, {test::track("elbow", "rx", {{0, 0}, {1, bend}, {2, bend}})}}};
+  return def;
+}
+
+TEST(NeverExplodes, WhenALimbsSkinMeetsItself) {
+  for (const auto& [columns, rows, degrees] :
+       {std::tuple{24, 32, 120}, {32, 48, 90}, {48, 96, 60}}) {
+    const CharacterDef def = limb(columns, rows, degrees * kPi / 180);
+    const Worst worst = test::simulate(Character(def), 0, 1.0 / 60, 120);
+    expectSound(worst, std::to_string(degrees));
+    EXPECT_LE(worst.stretch, 1.2 * def.skin->material.max_stretch) << degrees;
+    EXPECT_EQ(worst.stats.repaired_points, 0u) << degrees;
+  }
+}
+
 TEST(NeverExplodes, WhenTheStateIsBroken) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e30f;
   for (const std::string integrator : {"auto", "leapfrog", "verlet"}) {
