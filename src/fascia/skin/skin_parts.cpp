@@ -28,6 +28,7 @@ void SkinReport::checkValues(const SkinDef& def) const {
   check(def.contact, "/contact");
   check(def.bottom, "/bottom");
   check(def.top, "/top");
+  if (def.surface) check(*def.surface, "/surface");
   for (std::size_t i = 0; i < def.brushes.size(); ++i)
     check(def.brushes[i], entryOf("/brushes", i));
   for (std::size_t i = 0; i < def.anchors.size(); ++i)

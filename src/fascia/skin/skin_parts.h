@@ -46,17 +46,22 @@ NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p,
                           std::span<const SolidId> solids);
 NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p);  // of all
 
-// Regions and brushes on the points of a skin. A rig has weights, a grid (rig = nullptr) u and v.
+// Regions and brushes on the points of a skin. A grid has u and v; others have weights.
 struct EditPoint {
   std::size_t point;                      // storage index
   double u, v;                            // material coordinates; not read if the skin has none
   SolidId solid;                          // that the point is tied to; invalid: none
-  const PointWeights* weights = nullptr;  // of an imported mesh, by joints of the rig
+  const PointWeights* weights = nullptr;  // not of a grid; by the numbers of EditedSkin::joints
+};
+enum class SkinKind { grid, rig, surface };
+struct EditedSkin {
+  SkinKind kind;
+  std::span<const std::string> joints;  // that points have weights for
 };
 // Only quantities that `changes` are touched.
 using QuantityMask = std::array<bool, kSkinQuantities>;
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
-                    std::span<const EditPoint> points, const RiggedModel* rig,
+                    std::span<const EditPoint> points, const EditedSkin& skin,
                     const VectorArray& rest, const QuantityMask& changes,
                     SkinQuantities& quantities);
 // Where a brush is in the rest posture; none if its joint is not found.

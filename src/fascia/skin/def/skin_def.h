@@ -247,9 +247,27 @@ constexpr auto tunables(const SkinPartDef*) {
   return std::tuple{tunable(&SkinPartDef::rigid, "rigid", "Carried by its joints as it is")};
 }
 
+// A skin on triangles around the surface of all solids together, in place of a grid: any figure,
+// with limbs and holes.
+struct SkinSurfaceDef {
+  std::optional<double> edge_m;
+  double blend_m = 0.02;
+  bool operator==(const SkinSurfaceDef&) const = default;
+};
+constexpr auto tunables(const SkinSurfaceDef*) {
+  using S = SkinSurfaceDef;
+  return std::tuple{
+      tunable(&S::edge_m, "edge_m", "m", {1e-5, 100},
+              "How long the triangles' edges are, shorter where the surface is curved; none: a "
+              "fortieth of the figure's size"),
+      tunable(&S::blend_m, "blend_m", "m", {0, 10},
+              "Radius of the fillet between solids that meet; 0: a crease")};
+}
+
 struct SkinDef {
   int columns = 32, rows = 32;  // columns go around, rows from bottom to top
   SkinEndDef bottom, top;
+  std::optional<SkinSurfaceDef> surface;  // given: no grid
   SkinMaterialDef material;
   SkinFatDef fat;
   SkinTissueDef tissue;

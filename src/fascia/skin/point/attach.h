@@ -1,10 +1,10 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <fascia/base/aligned.h>
 #include <fascia/field/field.h>
-#include <fascia/skin/grid/grid_layout.h>
 
 namespace fascia {
 
@@ -14,15 +14,21 @@ struct Attachment {
   Vec3 place_m = Vec3::Zero();  // world, on the solid's surface
 };
 
-// "Attach all" (Turner & Gobbetti 1998, §4): every point of the grid to the flesh that its inward
-// normal meets, or to the nearest flesh at all where the normal meets none within four times that
-// distance and fat_m more. In the order of the points, row by row, ends included.
-std::vector<Attachment> attachAlongNormals(const DistanceField& field, const GridLayout& layout,
+// Points that lie together, at most NearestSolids::kBlock.
+struct PointRun {
+  std::size_t first, number, count;  // storage index, place in results
+};
+
+// "Attach all" (Turner & Gobbetti 1998, §4): every point to the flesh that its inward normal meets,
+// or to the nearest flesh at all where the normal meets none within four times that distance and
+// fat_m more. `runs` in the order of their numbers, which leave no gap.
+std::vector<Attachment> attachAlongNormals(const DistanceField& field,
+                                           std::span<const PointRun> runs,
                                            const VectorArray& points_m, const VectorArray& normals,
                                            double fat_m);
 
-// The solid nearest to each point, in the same order.
-std::vector<SolidId> nearestSolids(const DistanceField& field, const GridLayout& layout,
+// The solid nearest to each point, by the same numbers.
+std::vector<SolidId> nearestSolids(const DistanceField& field, std::span<const PointRun> runs,
                                    const VectorArray& points_m);
 
 }  // namespace fascia
