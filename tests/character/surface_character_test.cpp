@@ -47,6 +47,7 @@ TEST(SurfaceCharacter, WarnsOfATubeThatLeavesLimbsOutside) {
   def.skin->material.drag_Ns_per_m3 = 9;
   EXPECT_EQ(character.edited(def).warnings().size(), 1u);
   def.skin->bottom = def.skin->top = {};
+  def.skin->columns = def.skin->rows = SkinDef{}.columns;
   def.skin->surface.emplace();
   EXPECT_TRUE(character.edited(def).warnings().empty());
 }

@@ -163,6 +163,11 @@ TEST(SurfaceSkin, RefusesEdgesThatWouldMakeTooManyPoints) {
   EXPECT_FALSE(body.build());
   ASSERT_EQ(body.diagnostics.errors().size(), 1u);
   EXPECT_EQ(body.diagnostics.errors()[0].where.pointer, "/skin/surface/edge_m");
+  // Edges longer than the figure are an eighth of it.
+  body.skinDef.surface->edge_m = 50;
+  ASSERT_TRUE(body.build());
+  EXPECT_GT(body.skin->pointCount(), 50u);
+  EXPECT_TRUE(ClosedMesh(meshOf(*body.skin, body.skin->restPosition())).closed);
 }
 
 TEST(SolidUnion, IsNeverFartherThanTheNearestSolidLessTheFat) {

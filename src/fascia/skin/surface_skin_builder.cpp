@@ -102,12 +102,16 @@ bool SurfaceSkinBuilder::lay() {
     parts_.attachment = attachment_;
     return true;
   }
+  const std::string edge = shortestText(surfaceEdge_m(base_.posedFlesh, key.surface));
+  if (isTooFine(base_.posedFlesh, key.surface, key.fat_m)) {
+    report_.error("/surface/edge_m", "found " + edge + ", which would make too many points",
+                  "choose a larger one, or let the solids be as large as they are in metres");
+    return false;
+  }
   const TriangleMesh mesh = surfaceOfSolids(base_.posedFlesh, key.surface, key.fat_m);
   if (mesh.triangles.empty()) {
-    report_.error("/surface/edge_m",
-                  "found " + shortestText(surfaceEdge_m(base_.posedFlesh, key.surface)) +
-                      ", which would make too many points",
-                  "choose a larger one, or let the solids be as large as they are in metres");
+    report_.error("/surface/edge_m", "found " + edge + ", longer than all solids are thick",
+                  "choose a smaller one");
     return false;
   }
   making_ = std::make_shared<SurfaceRest>();

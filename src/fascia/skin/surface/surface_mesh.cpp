@@ -11,6 +11,8 @@ namespace {
 
 // Of the figure's size: edges where nobody says otherwise.
 constexpr double kUsualEdge = 1.0 / 40;
+constexpr double kLongestEdge = 1.0 / 8;
+constexpr double kCoarseLook = 1.0 / 64;
 // Cubes of this share of an edge find what triangles of that size can show.
 constexpr double kCellOfEdge = 0.6;
 
@@ -24,25 +26,33 @@ double areaOf(const TriangleMesh& mesh) {
   return 0.5 * twice;
 }
 
-}  // namespace
-
-double surfaceEdge_m(const DistanceField& flesh, const SkinSurfaceDef& def) {
-  if (def.edge_m) return *def.edge_m;
+double sizeOf(const DistanceField& flesh) {
   Box box;
   for (std::size_t s = 0; s < flesh.solidCount(); ++s)
     box.add(flesh.bounds(SolidId(static_cast<std::int64_t>(s))));
-  return std::max(1e-6, kUsualEdge * box.size().norm());
+  return std::max(1e-6, box.size().norm());
+}
+
+}  // namespace
+
+double surfaceEdge_m(const DistanceField& flesh, const SkinSurfaceDef& def) {
+  const double size = sizeOf(flesh);
+  return std::min(def.edge_m.value_or(kUsualEdge * size), kLongestEdge * size);
+}
+
+bool isTooFine(const DistanceField& flesh, const SkinSurfaceDef& def, double fat_m) {
+  const ImplicitSurface surface = unionOfSolids(flesh, {fat_m, def.blend_m});
+  const double area = areaOf(isoSurface(surface, kCoarseLook * surface.bounds_m.size().norm()));
+  // Six even triangles around a point: √3/2 edge² each.
+  const double least_m = RemeshOptions{}.finest * surfaceEdge_m(flesh, def);
+  return area > kMostSurfacePoints * 0.866 * least_m * least_m;
 }
 
 TriangleMesh surfaceOfSolids(const DistanceField& flesh, const SkinSurfaceDef& def, double fat_m) {
   const ImplicitSurface surface = unionOfSolids(flesh, {fat_m, def.blend_m});
   RemeshOptions options;
   options.edge_m = surfaceEdge_m(flesh, def);
-  const TriangleMesh first = isoSurface(surface, kCellOfEdge * options.edge_m);
-  // Six even triangles around a point: √3/2 edge² each.
-  const double least_m = options.finest * options.edge_m;
-  if (areaOf(first) > kMostSurfacePoints * 0.866 * least_m * least_m) return {};
-  return remeshed(surface, first, options);
+  return remeshed(surface, isoSurface(surface, kCellOfEdge * options.edge_m), options);
 }
 
 std::vector<PointWeights> sharesOfJoints(const Flesh& flesh, const DistanceField& posed,
