@@ -69,7 +69,7 @@ TEST_P(Examples, KeepTheSkinOutsideOfTheFleshInEveryFrameOfEveryMotion) {
 
 TEST_P(Examples, SurviveATeleportOfEveryJoint) {
   CharacterDef def = readCharacterFile(GetParam()).def;
-  def.skin->columns = 20, def.skin->rows = 24;
+  def.skin->grid.columns = 20, def.skin->grid.rows = 24;
   def.simulation.settle_s = 0;
   MotionDef jump = test::teleport(0.1, 4, 1, 1);
   const std::vector<Key> there = jump.tracks[0].keys;

@@ -85,16 +85,17 @@ std::vector<Edit> gridEdits() {
        [](CharacterDef& d, int n) {
          renameJoint(d, d.skeleton.joints.back().name, "joint " + std::to_string(n));
        }},
-      {"wrapped anew", [](CharacterDef& d, int n) { d.skin->cling = 0.12 + 0.01 * wave(n); }},
+      {"wrapped anew", [](CharacterDef& d, int n) { d.skin->grid.cling = 0.12 + 0.01 * wave(n); }},
   };
 }
 
 std::vector<Edit> rigEdits() {
   return {
-      {"jiggle", [](CharacterDef& d, int n) { d.skin->pose.jiggle = 0.5 + 0.1 * wave(n); }},
-      {"muscle", [](CharacterDef& d, int n) { d.skin->pose.muscle = 0.5 + 0.1 * wave(n); }},
-      {"volume", [](CharacterDef& d, int n) { d.skin->pose.volume = 0.5 + 0.1 * wave(n); }},
-      {"tightness", [](CharacterDef& d, int n) { d.skin->pose.tightness = 0.5 + 0.1 * wave(n); }},
+      {"jiggle", [](CharacterDef& d, int n) { d.skin->mesh.pose.jiggle = 0.5 + 0.1 * wave(n); }},
+      {"muscle", [](CharacterDef& d, int n) { d.skin->mesh.pose.muscle = 0.5 + 0.1 * wave(n); }},
+      {"volume", [](CharacterDef& d, int n) { d.skin->mesh.pose.volume = 0.5 + 0.1 * wave(n); }},
+      {"tightness",
+       [](CharacterDef& d, int n) { d.skin->mesh.pose.tightness = 0.5 + 0.1 * wave(n); }},
       {"brush of fat",
        [](CharacterDef& d, int n) {
          d.skin->brushes = {{SkinQuantity::fat, Vec3::Zero(), d.skeleton.joints.back().name, 0.05,

@@ -47,7 +47,7 @@ std::vector<std::array<std::uint32_t, 3>> cellTriangles(const GridLayout& g) {
 SkinParts GridSkinBuilder::build() {
   report_.checkValues(def_);
   if (!checkGrid()) return {};
-  layout_ = {def_.columns, def_.rows, true};
+  layout_ = {def_.grid.columns, def_.grid.rows, true};
   if (!checkPoints() || !findJoints() || !layAround()) return {};
   findSource();
   setQuantities();
@@ -62,8 +62,8 @@ SkinParts GridSkinBuilder::build() {
 }
 
 bool GridSkinBuilder::checkGrid() const {
-  const bool columns = report_.checkSide("/grid/0", def_.columns);
-  const bool rows = report_.checkSide("/grid/1", def_.rows);
+  const bool columns = report_.checkSide("/grid/0", def_.grid.columns);
+  const bool rows = report_.checkSide("/grid/1", def_.grid.rows);
   return columns && rows;
 }
 
@@ -113,13 +113,13 @@ bool GridSkinBuilder::findJoints() {
     report_.error("", "found a skin, but no solids for it to lie on", "add at least one solid");
     return false;
   }
-  joint_[0] = report_.findJoint("/bottom/joint", def_.bottom.joint);
-  joint_[1] = report_.findJoint("/top/joint", def_.top.joint);
+  joint_[0] = report_.findJoint("/bottom/joint", def_.grid.bottom.joint);
+  joint_[1] = report_.findJoint("/top/joint", def_.grid.top.joint);
   return joint_[0].valid() && joint_[1].valid();
 }
 
 bool GridSkinBuilder::findEnds(EndRing (&rings)[2]) const {
-  const SkinEndDef* ends[2] = {&def_.bottom, &def_.top};
+  const SkinEndDef* ends[2] = {&def_.grid.bottom, &def_.grid.top};
   Vec3 origin[2];
   for (int e = 0; e < 2; ++e) origin[e] = jointFrame(e).point(ends[e]->position_m);
   for (int e = 0; e < 2; ++e) {
@@ -152,7 +152,7 @@ GridRestKey GridSkinBuilder::restKey() const {
   }
   key.endJoints = {jointFrame(0), jointFrame(1)};
   key.fat_m = def_.fat.thickness_m;
-  key.anchors = def_.anchors;
+  key.anchors = def_.grid.anchors;
   return key;
 }
 
@@ -202,7 +202,7 @@ std::shared_ptr<const GridWrap> GridSkinBuilder::wrapAnew(const GridWrapKey& key
 VectorArray GridSkinBuilder::wrappedShape(const EndRing (&ends)[2]) const {
   if (!def_.points || def_.points->rest_position_m.empty())
     return shrinkWrap(base_.posedFlesh, layout_, ends[0], ends[1],
-                      {def_.fat.thickness_m, def_.cling});
+                      {def_.fat.thickness_m, def_.grid.cling});
   const GridLayout saved = savedLayout();
   VectorArray r(saved.storage());
   std::size_t p = 0;
@@ -300,7 +300,7 @@ std::vector<GridAttachment::Fixed> GridSkinBuilder::fixEnds(SkinShape& shape) co
 
 // Strands that were moved by hand; `anchors` are those of all inner points, row by row.
 void GridSkinBuilder::overrideAnchors(std::vector<TissueAnchors::Anchor>& anchors) const {
-  for (const SkinAnchorDef& a : def_.anchors) {
+  for (const SkinAnchorDef& a : def_.grid.anchors) {
     const int column =
         layout_.wrapped(static_cast<int>(std::lround(a.u * layout_.columns)) % layout_.columns);
     const int row = static_cast<int>(std::lround(a.v * (layout_.rows - 1)));
@@ -376,8 +376,8 @@ void GridSkinBuilder::setNaturalLengths() {
 }
 
 void GridSkinBuilder::applyEdits() {
-  for (std::size_t n = 0; n < def_.anchors.size(); ++n)
-    report_.findSolid("/anchors/" + std::to_string(n) + "/solid", def_.anchors[n].solid);
+  for (std::size_t n = 0; n < def_.grid.anchors.size(); ++n)
+    report_.findSolid("/anchors/" + std::to_string(n) + "/solid", def_.grid.anchors[n].solid);
   if (std::ranges::none_of(changes_, std::identity{})) return;
   std::vector<EditPoint> points;
   std::vector<std::size_t> numbers(layout_.storage());
