@@ -33,6 +33,7 @@ Examples:
 struct EditingOptions {
   std::string file;
   std::vector<int> points{1024, 10000};
+  std::vector<std::string> only;  // names of edits; empty: all
   int repeats = 41;
 };
 
@@ -155,14 +156,17 @@ Character loadWithPoints(const std::string& file, int points) {
   return character;
 }
 
-Json measureAll(const Character& character, int repeats, const Console& console) {
+Json measureAll(const Character& character, const EditingOptions& options,
+                const Console& console) {
   const std::string name = character.def().name;
   Json::List rows;
   std::vector<Edit> all = edits();
   for (Edit& more : character.skin()->grid() ? gridEdits() : rigEdits())
     all.push_back(std::move(more));
   for (const Edit& edit : all) {
-    const Times t = measure(character, edit, repeats);
+    if (!options.only.empty() && std::ranges::find(options.only, edit.name) == options.only.end())
+      continue;
+    const Times t = measure(character, edit, options.repeats);
     console.say(fmt::format(
         "{} {:>6}  {:<14} {:7.2f} ms to edit, {:6.2f} ms to go on; first frame {:7.2f} ms, usual "
         "{:7.2f} ms",
@@ -186,7 +190,7 @@ void runEditing(const EditingOptions& options, const Console& console) {
   Json::List results;
   for (const int points : options.points) {
     const Character character = loadWithPoints(file, points);
-    results.push_back(measureAll(character, options.repeats, console));
+    results.push_back(measureAll(character, options, console));
     if (!character.skin()->grid()) break;  // a mesh has the points that it has
   }
   console.answer(
@@ -202,6 +206,8 @@ void addEditingBench(CLI::App& group, Console& console) {
   command.add_option("--points", options->points, "Skin points (default: 1024 10000)")
       ->type_name("N")
       ->check(numberIn(64, 1e6));
+  command.add_option("--edit", options->only, "Only these, as the table names them")
+      ->type_name("NAME");
   command.add_option("--repeats", options->repeats, "Edits of each kind (default: 41)")
       ->type_name("N")
       ->check(numberIn(1, 1e4));
