@@ -67,6 +67,22 @@ TEST_P(Examples, KeepTheSkinOutsideOfTheFleshInEveryFrameOfEveryMotion) {
   }
 }
 
+TEST_P(Examples, HardlyCutTheFleshWithTheirFaces) {
+  const Character character = load(32, 32);
+  TriangleMesh surface;
+  for (int m = 0; m < static_cast<int>(character.motionCount()); ++m) {
+    CharacterState state = initialState(character, character.source(m));
+    SkinStats stats;
+    for (int f = 0; f < 90; ++f) {
+      advance(character, character.source(m), 1.0 / 30, state, stats);
+      if (f % 6 != 5) continue;
+      skinSurface(*character.skin(), state.skin, surface);
+      measureFaces(state.flesh, surface, stats);
+    }
+    EXPECT_LE(stats.max_face_depth_m, 3e-3 * character.skin()->size_m()) << m;
+  }
+}
+
 TEST_P(Examples, SurviveATeleportOfEveryJoint) {
   CharacterDef def = readCharacterFile(GetParam()).def;
   def.skin->grid.columns = 20, def.skin->grid.rows = 24;

@@ -9,6 +9,7 @@
 #include <fascia/skin/grid/attach.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/resample.h>
+#include <fascia/skin/point/face_samples.h>
 #include <fascia/skin/point/leapfrog.h>
 
 namespace fascia {
@@ -24,6 +25,8 @@ constexpr double kEndRadius = 0.022;
 // A skin whose waves need shorter steps than this rides on a coarse one with about so many points.
 constexpr double kFinestStep_s = 0.4e-3;
 constexpr std::size_t kCoarsePoints = 1200;
+// How deep a face may cut the flesh between its samples, as a share of the skin's size.
+constexpr double kFaceTolerance = 1e-3;
 
 template <class Visit>
 void forEachPoint(const GridLayout& g, const Visit& visit) {
@@ -196,6 +199,9 @@ std::shared_ptr<const GridWrap> GridSkinBuilder::wrapAnew(const GridWrapKey& key
   wrap->rest = wrappedShape(ends);
   placePoints(*wrap);
   attach(*wrap);
+  FaceSamples faces = sampleFaces(wrap->posedFlesh, cellTriangles(layout_), wrap->rest, wrap->fat_m,
+                                  kFaceTolerance * sizeOf(wrap->rest));
+  if (!faces.empty()) wrap->faces = std::make_shared<FaceSamples>(std::move(faces));
   return wrap;
 }
 
@@ -263,9 +269,8 @@ void GridSkinBuilder::setRest(std::shared_ptr<const GridWrap> wrap, GridRestKey 
                               FollowedGrid followed) {
   auto shape = std::make_shared<SkinShape>();
   shape->rest = std::move(followed.rest);
-  Box box;
-  forEachPoint(layout_, [&](int, int, std::size_t k) { box.add(pointAt(shape->rest, k)); });
-  shape->size_m = size_m_ > 0 ? size_m_ : std::max(1e-6, box.size().norm());
+  shape->faces = wrap->faces;
+  shape->size_m = size_m_ > 0 ? size_m_ : sizeOf(shape->rest);
   for (int j = 1; j + 1 < layout_.rows; ++j)
     for (int i = 0; i < layout_.columns; i += static_cast<int>(PointBlock::kCapacity))
       shape->blocks.push_back(
@@ -283,6 +288,12 @@ void GridSkinBuilder::setRest(std::shared_ptr<const GridWrap> wrap, GridRestKey 
   parts_.gridRest = std::make_shared<GridRest>(
       GridRest{std::move(wrap), std::move(key), pointAreas(layout_, shape->rest)});
   parts_.shape = std::move(shape);
+}
+
+double GridSkinBuilder::sizeOf(const VectorArray& rest) const {
+  Box box;
+  forEachPoint(layout_, [&](int, int, std::size_t k) { box.add(pointAt(rest, k)); });
+  return std::max(1e-6, box.size().norm());
 }
 
 std::vector<GridAttachment::Fixed> GridSkinBuilder::fixEnds(SkinShape& shape) const {
@@ -485,6 +496,7 @@ void GridSkinBuilder::layUnder(const GridLayout& fineLayout, const SkinParts& fi
   if (!wrap) {
     auto own = std::make_shared<GridWrap>(*fine.gridRest->wrap);
     own->layout = layout_;
+    own->faces = nullptr;  // of the fine grid, which is the one that is seen
     own->rest = resample(fineLayout, own->rest, layout_);
     own->anchors.clear(), own->placements.clear();
     placePoints(*own);
