@@ -67,9 +67,25 @@ TEST_P(Examples, KeepTheSkinOutsideOfTheFleshInEveryFrameOfEveryMotion) {
   }
 }
 
+TEST_P(Examples, HardlyCutTheFleshWithTheirFaces) {
+  const Character character = load(32, 32);
+  TriangleMesh surface;
+  for (int m = 0; m < static_cast<int>(character.motionCount()); ++m) {
+    CharacterState state = initialState(character, character.source(m));
+    SkinStats stats;
+    for (int f = 0; f < 90; ++f) {
+      advance(character, character.source(m), 1.0 / 30, state, stats);
+      if (f % 6 != 5) continue;
+      skinSurface(*character.skin(), state.skin, surface);
+      measureFaces(state.flesh, surface, stats);
+    }
+    EXPECT_LE(stats.max_face_depth_m, 3e-3 * character.skin()->size_m()) << m;
+  }
+}
+
 TEST_P(Examples, SurviveATeleportOfEveryJoint) {
   CharacterDef def = readCharacterFile(GetParam()).def;
-  def.skin->columns = 20, def.skin->rows = 24;
+  def.skin->grid.columns = 20, def.skin->grid.rows = 24;
   def.simulation.settle_s = 0;
   MotionDef jump = test::teleport(0.1, 4, 1, 1);
   const std::vector<Key> there = jump.tracks[0].keys;

@@ -10,8 +10,8 @@ namespace {
 
 CharacterDef surfaceCharacter() {
   CharacterDef def = test::smallCharacter();
-  def.skin->bottom = def.skin->top = {};
-  def.skin->columns = def.skin->rows = SkinDef{}.columns;
+  def.skin->grid.bottom = def.skin->grid.top = {};
+  def.skin->grid.columns = def.skin->grid.rows = SkinGridDef{}.columns;
   def.skin->surface = SkinSurfaceDef{.edge_m = 0.06};
   return def;
 }
@@ -38,7 +38,7 @@ TEST(SurfaceCharacter, WarnsOfATubeThatLeavesLimbsOutside) {
   FleshSolidDef arm = test::ball("arm", "spine", 0.05, 0.08);
   arm.position_m.x() = 0.9;
   def.flesh.solids.push_back(arm);
-  def.skin->top.position_m = Vec3(0, 0.15, 0);
+  def.skin->grid.top.position_m = Vec3(0, 0.15, 0);
   const Character character(def);
   ASSERT_EQ(character.warnings().size(), 1u);
   EXPECT_EQ(character.warnings()[0].where.pointer, "/skin");
@@ -46,8 +46,8 @@ TEST(SurfaceCharacter, WarnsOfATubeThatLeavesLimbsOutside) {
   // An edit that keeps the wrap keeps the warning.
   def.skin->material.drag_Ns_per_m3 = 9;
   EXPECT_EQ(character.edited(def).warnings().size(), 1u);
-  def.skin->bottom = def.skin->top = {};
-  def.skin->columns = def.skin->rows = SkinDef{}.columns;
+  def.skin->grid.bottom = def.skin->grid.top = {};
+  def.skin->grid.columns = def.skin->grid.rows = SkinGridDef{}.columns;
   def.skin->surface.emplace();
   EXPECT_TRUE(character.edited(def).warnings().empty());
 }

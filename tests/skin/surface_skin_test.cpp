@@ -19,7 +19,7 @@ using test::ClosedMesh;
 Body figureOf(std::vector<FleshSolidDef> solids, double edge_m = 0.03) {
   Body body;
   body.fleshDef.solids = std::move(solids);
-  body.skinDef.bottom = body.skinDef.top = {};
+  body.skinDef.grid.bottom = body.skinDef.grid.top = {};
   body.skinDef.surface = SkinSurfaceDef{.edge_m = edge_m};
   return body;
 }
@@ -215,7 +215,7 @@ TEST(SkinFit, NamesWhatATubeLeavesOutside) {
 
   Body ring = ringOfBalls();
   ring.skinDef.surface.reset();
-  ring.skinDef.bottom.joint = "hip", ring.skinDef.top.joint = "neck";
+  ring.skinDef.grid.bottom.joint = "hip", ring.skinDef.grid.top.joint = "neck";
   ASSERT_TRUE(ring.build());
   EXPECT_GT(ring.skin->fit()->outside.size(), 4u);
   Diagnostics diagnostics;

@@ -31,7 +31,7 @@ class Idle {
         diagnostics_(diagnostics),
         onRig_(def.rig.has_value()),
         onSurface_(!onRig_ && def.skin && def.skin->surface),
-        simulated_(def.skin && (!onRig_ || def.skin->pose.simulate)) {}
+        simulated_(def.skin && (!onRig_ || def.skin->mesh.pose.simulate)) {}
 
   void warn() const {
     if (def_.skin) warnOfSkin(*def_.skin);
@@ -54,23 +54,23 @@ class Idle {
       warnOfMesh(skin);
     } else {
       if (!onSurface_) rows(skin.fat, "/skin/fat", {"bulk_Pa"}, kGridFat);
-      rows(skin.pose, "/skin/pose", {}, kGridPose);
+      rows(skin.mesh.pose, "/skin/pose", {}, kGridPose);
     }
     if (onSurface_) warnOfSurface(skin);
     warnOfQuantities(skin);
   }
 
   void warnOfSurface(const SkinDef& skin) const {
-    const SkinDef standard;
-    if (skin.columns != standard.columns || skin.rows != standard.rows)
+    const SkinGridDef standard;
+    if (skin.grid.columns != standard.columns || skin.grid.rows != standard.rows)
       one("/skin/grid", kSurfaceWrap);
-    rows(skin, "/skin", {"cling"}, kSurfaceWrap);
-    if (!skin.anchors.empty()) one("/skin/anchors", kSurfaceWrap);
+    rows(skin.grid, "/skin", {"cling"}, kSurfaceWrap);
+    if (!skin.grid.anchors.empty()) one("/skin/anchors", kSurfaceWrap);
   }
 
   void warnOfMesh(const SkinDef& skin) const {
-    rows(skin, "/skin", {"cling"}, kMeshWrap);
-    if (!skin.anchors.empty()) one("/skin/anchors", kMeshAnchors);
+    rows(skin.grid, "/skin", {"cling"}, kMeshWrap);
+    if (!skin.grid.anchors.empty()) one("/skin/anchors", kMeshAnchors);
     rows(skin.contact, "/skin/contact", {}, kMeshContact);
     if (simulated_) {
       rows(skin.material, "/skin/material", {"friction_per_s", "restitution"}, kMeshFriction);

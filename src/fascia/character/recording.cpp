@@ -26,6 +26,7 @@ void keepFrame(const Character& character, const CharacterState& state, bool kep
     skinSurface(*character.skin(), state.skin, out.skin);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
                 out.stats);
+    measureFaces(state.flesh, out.skin, out.stats);
   }
   if (!kept) return;
   out.frames.push_back(

@@ -45,6 +45,7 @@ class GridSkinBuilder {
   void placePoints(GridWrap& wrap) const;
   void attach(GridWrap& wrap) const;
   void overrideAnchors(std::vector<TissueAnchors::Anchor>& anchors) const;
+  double sizeOf(const VectorArray& rest) const;  // diagonal of its box
   std::vector<FleshAttachment::Fixed> fixEnds(SkinShape& shape) const;
   void findSource();
   bool keepsQuantity(SkinQuantity quantity) const;

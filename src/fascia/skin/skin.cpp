@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include <fascia/skin/contact/face_depth.h>
 #include <fascia/skin/contact/flesh_contact.h>
 #include <fascia/skin/grid/resample.h>
 #include <fascia/skin/grid_skin_builder.h>
@@ -62,6 +63,10 @@ void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state,
       stats.max_penetration_m, contact->deepest(*pose.field, skin.points(), state.position));
   stats.max_edge_stretch =
       std::max(stats.max_edge_stretch, skin.topology().maxStretch(state.position));
+}
+
+void measureFaces(const DistanceField& flesh, const TriangleMesh& surface, SkinStats& stats) {
+  stats.max_face_depth_m = std::max(stats.max_face_depth_m, deepestFace(flesh, surface));
 }
 
 SkinState resampled(const Skin& from, const SkinState& state, const Skin& to) {

@@ -52,6 +52,7 @@ struct SkinBase {
   const RiggedModel* rig = nullptr;  // the skin is this mesh; nullptr: a grid around the flesh
 };
 
+struct FaceSamples;
 struct GridSkin;
 struct GridRest;
 struct GridQuantitySource;
@@ -66,7 +67,8 @@ struct SkinShape {
   VectorArray rest;   // storage order, padding filled
   double size_m = 0;  // diagonal of its box
   std::vector<PointBlock> blocks;
-  std::vector<std::size_t> fixedPoints;  // storage indices
+  std::vector<std::size_t> fixedPoints;      // storage indices
+  std::shared_ptr<const FaceSamples> faces;  // nullptr: faces are no larger than what they cover
 };
 
 // What a skin is made of: each part is constant and shared with the skins that were edited from it.
@@ -128,6 +130,7 @@ class Skin {
   const SkinQuantities& quantities() const { return *parts_.quantities; }
   std::span<const PointBlock> blocks() const { return parts_.shape->blocks; }
   std::span<const std::size_t> fixedPoints() const { return parts_.shape->fixedPoints; }
+  const std::shared_ptr<const FaceSamples>& faces() const { return parts_.shape->faces; }
   double defaultStep_s() const { return parts_.defaultStep_s; }
   // The same skin at a resolution whose waves a step of about a millisecond resolves; nullptr if
   // this one's does. See leapfrog.h.
@@ -168,6 +171,7 @@ struct SkinStats {
   double step_min_s = 1e300, step_max_s = 0;
   double forces_s = 0, constraints_s = 0, other_s = 0;  // wall clock spent
   double max_penetration_m = 0;       // deepest point at the end of any measured frame
+  double max_face_depth_m = 0;        // deepest cut of a drawn face into a solid, likewise
   double max_edge_stretch = 0;        // edge length over rest-shape length
   std::uint64_t repaired_points = 0;  // points that had to be put back (never-explodes)
 };
@@ -214,6 +218,9 @@ void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double
 // Adds what a finished frame shows to `stats`: deepest penetration and largest stretch. Measured
 // afresh, outside of the step.
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats);
+
+// Adds how deep the faces of `surface`, the state's, cut into the flesh.
+void measureFaces(const DistanceField& flesh, const TriangleMesh& surface, SkinStats& stats);
 
 // The same grid surface at another resolution (Turner & Gobbetti 1998, §6.5), at any
 // moment of a run.

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include <fascia/skin/contact/face_contact.h>
 #include <fascia/skin/grid/prolongation.h>
 #include <fascia/skin/skin.h>
 
@@ -42,6 +43,7 @@ class SkinStepper final : public SkinRun {
   std::unique_ptr<SurfaceStepper> surface_;
   StretchLimit stretchLimit_;
   std::unique_ptr<SkinContact> contact_;
+  std::unique_ptr<FaceContact> faces_;
   SelfContact selfContact_;
   FatPressure fatPressure_;
   VectorArray nextAnchor_, target_;

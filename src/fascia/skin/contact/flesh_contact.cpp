@@ -1,7 +1,6 @@
 #include <fascia/skin/contact/flesh_contact.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fascia/base/assert.h>
@@ -17,8 +16,7 @@ constexpr float kPushMargin = 8;
 // A solid's distance is an estimate whose error grows with the square of the depth: so far out of
 // it a point may be pushed without looking again.
 constexpr float kSure_m = 1e-3f;
-// Gap of a block and a solid that have not been tested yet.
-constexpr float kUnknown = -1e30f;
+constexpr float kUnknown = SolidMotions::kUnknown;
 // Blocks handed to a thread at once; smaller skins are not worth waking threads for.
 constexpr std::size_t kBlocksPerTask = 128;
 
@@ -151,9 +149,9 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
                 "a number for each point");
   FASCIA_ASSERT(reach_m >= 0, "a search reaches somewhere");
   readBoxes(field, boxes_);
-  followSolids(field);
   last_.resize(position.size());
   const std::size_t solids = boxes_.size();
+  if (!motions_.follow(field)) gaps_.assign(blocks_.size() * solids, kUnknown);
   const std::size_t tasks = (blocks_.size() + kBlocksPerTask - 1) / kBlocksPerTask;
   nearby_.resize(tasks * solids);
   parallelFor(tasks, [&](std::size_t t) {
@@ -165,11 +163,7 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
       const BlockBox box =
           loadContactLanes(blocks_[b], position, points.fat, lanes, &last_, &motion);
       const std::span gaps(gaps_.data() + b * solids, solids);
-      for (std::size_t s = 0; s < solids; ++s) {
-        // Also what is not a number makes a gap unknown.
-        const float nearer = approach(motion, motions_[s]);
-        gaps[s] = nearer < -kUnknown ? gaps[s] - nearer : kUnknown;
-      }
+      for (std::size_t s = 0; s < solids; ++s) gaps[s] = motions_.left(gaps[s], motion, s);
       BlockTest test{field, blocks_[b], lanes, scratch, gaps};
       float searched = reach_m, pushed = 0;
       bool any = test.findSolids(box, boxes_, searched);
@@ -192,66 +186,6 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
     }
   });
   return largest(results_);
-}
-
-// How much nearer a block and a solid can have come: the difference of their points' ways at the
-// block's centre, and how much the ways differ over the block.
-float FleshContact::approach(const BlockMotion& block, const SolidMotion& solid) {
-  const Eigen::Vector3f center(block.center[0], block.center[1], block.center[2]);
-  const Eigen::Vector3f way(block.way[0], block.way[1], block.way[2]);
-  const Eigen::Vector3f matter = solid.change * (center - solid.origin) + solid.shift;
-  return solid.steepness *
-         ((way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m);
-}
-
-// The motion of each solid since the last call, from its outline.
-void FleshContact::followSolids(const MovingField& field) {
-  const std::size_t solids = boxes_.size();
-  const bool first = motions_.size() != solids;
-  if (first) {
-    gaps_.assign(blocks_.size() * solids, kUnknown);
-    motions_.resize(solids);
-    corners_.resize(solids * kCorners);
-  }
-  for (std::size_t s = 0; s < solids; ++s) {
-    const SolidId id(static_cast<std::int64_t>(s));
-    const Transform frame = field.frame(id);
-    const MovingField::Outline& outline = field.outline(id);
-    Corners now;
-    for (std::size_t c = 0; c < kCorners; ++c) now[c] = frame.point(outline[c]).cast<float>();
-    Eigen::Vector3f* before = corners_.data() + s * kCorners;
-    if (first) std::copy(now.begin(), now.end(), before);
-    motions_[s] = motionBetween(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
-    motions_[s].steepness = static_cast<float>(field.lipschitz(id));
-    std::copy(now.begin(), now.end(), before);
-  }
-}
-
-FleshContact::SolidMotion FleshContact::motionBetween(
-    std::span<const Eigen::Vector3f, kCorners> before, const Corners& now) {
-  SolidMotion m;
-  Eigen::Matrix3f edges, edgesNow;
-  for (int a = 0; a < 3; ++a) {
-    edges.col(a) = before[std::size_t{1} << a] - before[0];
-    edgesNow.col(a) = now[std::size_t{1} << a] - now[0];
-  }
-  const Eigen::Matrix3f map = edgesNow * edges.inverse();
-  m.change = map - Eigen::Matrix3f::Identity();
-  m.origin = before[0];
-  m.shift = now[0] - before[0];
-  m.turn = m.change.norm();
-  // Distances change where the map is not rigid, and where the corners do not follow it.
-  const float size = (before[kCorners - 1] - before[0]).norm();
-  m.extra_m = 2 * size * (map.transpose() * map - Eigen::Matrix3f::Identity()).norm();
-  for (std::size_t c = 0; c < kCorners; ++c) {
-    const Eigen::Vector3f way = m.change * (before[c] - m.origin) + m.shift;
-    m.extra_m += (now[c] - before[c] - way).norm();
-  }
-  // A box without volume has no map: nothing is known then.
-  if (!std::isfinite(m.turn) || !std::isfinite(m.extra_m)) {
-    m = {Eigen::Matrix3f::Zero(), m.origin, m.shift, 0, -kUnknown};
-  }
-  return m;
 }
 
 float FleshContact::deepest(const DistanceField& field, const PointModel& points,

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <fascia/skin/contact/skin_contact.h>
+#include <fascia/skin/contact/solid_motions.h>
 #include <fascia/skin/point/point_kernels.h>
 
 namespace fascia {
@@ -36,22 +36,7 @@ class FleshContact final : public SkinContact {
   // What is known from the last call; it saves work and changes no result.
   VectorArray last_;         // positions
   std::vector<float> gaps_;  // blocks x solids: no point of the block is nearer
-  // A solid's motion since the last call as an affine map: x goes by change (x − origin) + shift.
-  struct SolidMotion {
-    Eigen::Matrix3f change;
-    Eigen::Vector3f origin, shift;
-    float turn;           // norm of change
-    float extra_m;        // what is not rigid: swelling and bending
-    float steepness = 1;  // the field's Lipschitz bound: how much a way can change distances
-  };
-  static float approach(const BlockMotion& block, const SolidMotion& solid);
-  void followSolids(const MovingField& field);
-  static constexpr std::size_t kCorners = MovingField::kOutline;
-  using Corners = std::array<Eigen::Vector3f, kCorners>;
-  static SolidMotion motionBetween(std::span<const Eigen::Vector3f, kCorners> before,
-                                   const Corners& now);
-  std::vector<SolidMotion> motions_;
-  std::vector<Eigen::Vector3f> corners_;  // of each solid's outline
+  SolidMotions motions_;
 };
 
 }  // namespace fascia
