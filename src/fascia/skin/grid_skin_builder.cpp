@@ -6,6 +6,7 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
+#include <fascia/skin/contact/face_lift.h>
 #include <fascia/skin/grid/attach.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/resample.h>
@@ -197,16 +198,36 @@ std::shared_ptr<const GridWrap> GridSkinBuilder::wrapAnew(const GridWrapKey& key
   wrap->flesh = base_.flesh;
   wrap->posedFlesh = base_.posedFlesh;
   wrap->rest = wrappedShape(ends);
-  placePoints(*wrap);
-  attach(*wrap);
   FaceSamples faces = sampleFaces(wrap->posedFlesh, cellTriangles(layout_), wrap->rest, wrap->fat_m,
                                   kFaceTolerance * sizeOf(wrap->rest));
-  if (!faces.empty()) wrap->faces = std::make_shared<FaceSamples>(std::move(faces));
+  if (!faces.empty()) {
+    if (!isSaved()) liftRest(faces, *wrap);
+    wrap->faces = std::make_shared<FaceSamples>(std::move(faces));
+  }
+  placePoints(*wrap);
+  attach(*wrap);
   return wrap;
 }
 
+// Faces that are lifted whenever they are shown are no longer then than at rest.
+void GridSkinBuilder::liftRest(const FaceSamples& faces, GridWrap& wrap) const {
+  PointModel points;
+  points.fat.assign(layout_.storage(), static_cast<float>(wrap.fat_m));
+  points.free.assign(layout_.storage(), 0.f);
+  forEachPoint(layout_, [&](int, int j, std::size_t k) {
+    if (j > 0 && j + 1 < layout_.rows) points.free[k] = 1;
+  });
+  liftFaces(faces, wrap.posedFlesh, points, static_cast<float>(kFaceClearance * sizeOf(wrap.rest)),
+            wrap.rest);
+  fillPads(layout_, wrap.rest);
+}
+
+bool GridSkinBuilder::isSaved() const {
+  return def_.points && !def_.points->rest_position_m.empty();
+}
+
 VectorArray GridSkinBuilder::wrappedShape(const EndRing (&ends)[2]) const {
-  if (!def_.points || def_.points->rest_position_m.empty())
+  if (!isSaved())
     return shrinkWrap(base_.posedFlesh, layout_, ends[0], ends[1],
                       {def_.fat.thickness_m, def_.grid.cling});
   const GridLayout saved = savedLayout();

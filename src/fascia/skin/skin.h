@@ -66,7 +66,7 @@ struct SkinShape {
   double size_m = 0;  // diagonal of its box
   std::vector<PointBlock> blocks;
   std::vector<std::size_t> fixedPoints;      // storage indices
-  std::shared_ptr<const FaceSamples> faces;  // nullptr: faces are no larger than what they cover
+  std::shared_ptr<const FaceSamples> faces;  // that may have to be lifted; nullptr: none
 };
 
 // What a skin is made of: each part is constant and shared with the skins that were edited from it.
@@ -124,7 +124,6 @@ class Skin {
   const SkinQuantities& quantities() const { return *parts_.quantities; }
   std::span<const PointBlock> blocks() const { return parts_.shape->blocks; }
   std::span<const std::size_t> fixedPoints() const { return parts_.shape->fixedPoints; }
-  const std::shared_ptr<const FaceSamples>& faces() const { return parts_.shape->faces; }
   double defaultStep_s() const { return parts_.defaultStep_s; }
   // The same skin at a resolution whose waves a step of about a millisecond resolves; nullptr if
   // this one's does. See leapfrog.h.
@@ -207,8 +206,8 @@ void placeSkin(const Skin& skin, const SkinPose& pose, SkinState& state);
 void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double end_s,
                  SkinState& state, SkinWorkspace& workspace, SkinStats& stats);
 
-// Adds what a finished frame shows to `stats`: deepest penetration and largest stretch. Measured
-// afresh, outside of the step.
+// Adds what a finished frame shows to `stats`: deepest point, and largest stretch as it is shown.
+// Measured afresh, outside of the step.
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats);
 
 // Adds how deep the faces of `surface`, the state's, cut into the flesh.
@@ -219,9 +218,11 @@ void measureFaces(const DistanceField& flesh, const TriangleMesh& surface, SkinS
 SkinState resampled(const Skin& from, const SkinState& state, const Skin& to);
 
 // The surface of a state for display and export; vertex order and triangles are the same in every
-// frame. A mesh: its drawn vertices (RiggedModel::vertices), without normals. A grid: the tube with
-// its ends capped, row by row columns + 1 points (the seam column twice for
-// its uv), then the centres of the bottom and the top cap. uv: u around, (0,0) = the top end.
-void skinSurface(const Skin& skin, const SkinState& state, TriangleMesh& mesh);
+// frame. Faces that flesh of the state's time comes through are lifted off it (face_lift.h). A
+// mesh: its drawn vertices (RiggedModel::vertices), without normals. A grid: the tube with its ends
+// capped, row by row columns + 1 points (the seam column twice for its uv), then the centres of the
+// bottom and the top cap. uv: u around, (0,0) = the top end.
+void skinSurface(const Skin& skin, const DistanceField& flesh, const SkinState& state,
+                 TriangleMesh& mesh);
 
 }  // namespace fascia

@@ -33,9 +33,6 @@ constexpr float kSlidingReach = 0.02f;
 // How often stretched skin is shortened and taken out of the flesh again in one interval, at most.
 constexpr int kStretchRounds = 8;
 constexpr float kStretchedBeyond = 0.1f;  // as long as an edge is longer than it may be by so much
-// Kept between faces and flesh where there is as much fat, for what lies between the samples of
-// faces; a share of the skin's size.
-constexpr double kFaceClearance = 1e-3;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
 
@@ -74,9 +71,6 @@ SkinStepper::SkinStepper(const Skin& skin)
       stretchLimit_(skin.topology().makeStretchLimit()),
       contact_(skin.makeContact()) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
-  if (skin.faces())
-    faces_ = std::make_unique<FaceContact>(skin.faces(),
-                                           static_cast<float>(kFaceClearance * skin.size_m()));
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
   if (skin.fatPressure())
     fatPressure_ = FatPressure(*skin.fatPressure(), skin.topology().storage());
@@ -275,7 +269,6 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   const float reach =
       std::min(1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) + 0.005f * size,
                skin_.points().slideLimit.empty() ? size : kSlidingReach * size);
-  if (faces_) faces_->project(*pose.field, skin_.points(), state.position, state.velocity);
   const auto leaveFlesh = [&] {
     const SkinContact::Result result = contact_->project(
         *pose.field, skin_.points(), reach, static_cast<float>(skin_.contactResponse().restitution),

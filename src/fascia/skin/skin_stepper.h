@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include <fascia/skin/contact/face_contact.h>
 #include <fascia/skin/grid/prolongation.h>
 #include <fascia/skin/skin.h>
 
@@ -43,7 +42,6 @@ class SkinStepper final : public SkinRun {
   std::unique_ptr<SurfaceStepper> surface_;
   StretchLimit stretchLimit_;
   std::unique_ptr<SkinContact> contact_;
-  std::unique_ptr<FaceContact> faces_;
   SelfContact selfContact_;
   FatPressure fatPressure_;
   VectorArray nextAnchor_, target_;
