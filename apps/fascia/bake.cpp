@@ -45,7 +45,7 @@ A character on a rig (see 'fascia flesh') becomes its old file with the motion c
   morphs   morph targets on top of the rig's own skinning
   cache    no skeleton; every vertex of every frame in a .pc2 and a .mdd beside the .glb
 
-A character whose skin is a grid becomes a small .glb of one or more motions, by --as:
+A character whose skin lies on its solids becomes a small .glb of one or more motions, by --as:
   morphs   weights for its joints and morph targets on top (what it does if nothing is said)
   bones    weights for its joints and helper bones
   cache    every vertex of every frame, a morph target each

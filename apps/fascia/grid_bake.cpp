@@ -35,7 +35,7 @@ double heightOf_m(const Recording& recording) {
 }  // namespace
 
 bool isSmallGridBake(const Character& character, const RigBakeOptions& options) {
-  return character.skin() && character.skin()->grid() && wayOf(options) != "cache";
+  return character.skin() && !character.skin()->rigged() && wayOf(options) != "cache";
 }
 
 GridBakeReport writeGridBake(const Character& character,

@@ -11,6 +11,7 @@
 #include <fascia/math/ode/integrators.h>
 #include <fascia/render/gl_context.h>
 #include <fascia/skin/grid/grid_skin.h>
+#include <fascia/skin/surface/surface_rest.h>
 
 #include "commands.h"
 #include "console.h"
@@ -100,6 +101,7 @@ void addCharacter(const Character& character, Facts& facts) {
       facts.add("skin_rows", skin->grid()->rows());
     }
     facts.add("skin_points", count(skin->pointCount()));
+    if (skin->surface()) facts.add("skin_triangles", count(skin->surface()->triangles.size()));
   }
   if (def.rig && def.rig->model) addRig(*def.rig->model, facts);
   facts.add("integrator", def.simulation.integrator);

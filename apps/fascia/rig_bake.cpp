@@ -81,8 +81,9 @@ void sayOthers(const RigBakeReport& report, const RiggedModel& rig, const Consol
 void RigBakeOptions::addTo(CLI::App& command) {
   command_ = &command;
   command
-      .add_option("--as", as,
-                  "How a .glb moves: bones, morphs or cache (default: bones; of a grid: morphs)")
+      .add_option(
+          "--as", as,
+          "How a .glb moves: bones, morphs or cache (default: bones; without a rig: morphs)")
       ->type_name("WAY")
       ->check(CLI::IsMember({"bones", "morphs", "cache"}).description(""));
   command.add_option("--helpers", helpers, "Helper bones that --as bones adds (default: 20)")
@@ -100,7 +101,7 @@ void RigBakeOptions::addTo(CLI::App& command) {
   command
       .add_option(
           "--targets", targets,
-          "Most targets that --as morphs makes (default: 16; of a grid: as the error asks for)")
+          "Most targets that --as morphs makes (default: 16; without a rig: as the error asks for)")
       ->type_name("N")
       ->check(numberIn(1, 256));
   command

@@ -98,7 +98,7 @@ void checkNames(const std::vector<std::string>& names) {
 void checkLoop(const TakeOptions& takes, const SimulationOptions& options,
                const CharacterDef& def) {
   if (takes.loop != "on") return;
-  if (!def.rig) throw Error("--loop on needs a character with a rig; this one's skin is a grid");
+  if (!def.rig) throw Error("--loop on needs a character with a rig; this one has none");
   if (options.duration_s > 0) throw Error("--loop on needs the whole motion: leave --duration out");
 }
 

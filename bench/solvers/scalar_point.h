@@ -93,7 +93,7 @@ void forEachFree(const Skin& skin, const Visit& visit) {
 // Calls visit(k) for every point that moves with a joint.
 template <class Visit>
 void forEachFixed(const Skin& skin, const Visit& visit) {
-  for (const GridAttachment::Fixed& f : skin.grid()->fixed()) visit(f.point);
+  for (const FleshAttachment::Fixed& f : skin.grid()->fixed()) visit(f.point);
 }
 
 // Ends a step of a scheme that works with positions only: velocities from the step taken, contact.

@@ -57,7 +57,7 @@ class SchemeRunner {
   const VectorArray& position() const { return position_; }
 
  private:
-  Vec3f fixedPlace(const GridAttachment::Fixed& f) const {
+  Vec3f fixedPlace(const FleshAttachment::Fixed& f) const {
     return state_.skeleton.joint_world[f.joint.index()].point(f.position_joint).cast<float>();
   }
 
@@ -65,12 +65,12 @@ class SchemeRunner {
     skin_.grid()->anchors().place(state_.flesh, scratch_, nextAnchor_);
     for (std::size_t k = 0; k < nextAnchor_.size(); ++k)
       put(around_.anchorVelocity, k, rate_per_s * (at(nextAnchor_, k) - at(around_.anchor, k)));
-    for (const GridAttachment::Fixed& f : skin_.grid()->fixed())
+    for (const FleshAttachment::Fixed& f : skin_.grid()->fixed())
       put(velocity_, f.point, rate_per_s * (fixedPlace(f) - at(position_, f.point)));
   }
 
   void project(double duration_s) {
-    for (const GridAttachment::Fixed& f : skin_.grid()->fixed())
+    for (const FleshAttachment::Fixed& f : skin_.grid()->fixed())
       put(position_, f.point, fixedPlace(f));
     const auto reach =
         static_cast<float>(2 * maxSpeed_m_per_s_ * duration_s + 0.01 * skin_.size_m());

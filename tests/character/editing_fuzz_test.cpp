@@ -183,7 +183,7 @@ TEST_P(EditedExamples, ComeToRestWhereAFreshCharacterDoes) {
   EXPECT_LT(mean, hasCreases ? 2e-3 : 2e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, EditedExamples, testing::ValuesIn(test::exampleCharacters()),
+INSTANTIATE_TEST_SUITE_P(Files, EditedExamples, testing::ValuesIn(test::exampleGrids()),
                          test::exampleName);
 
 }  // namespace

@@ -88,13 +88,15 @@ inline MotionDef teleport(double every_s, int times, double angle_rad, double wa
 
 // Fixed points are placed, not moved: their velocities are made anew for every interval.
 inline bool allFinite(const Character& character, const CharacterState& state) {
-  const GridLayout& g = character.skin()->grid()->layout();
+  const Skin& skin = *character.skin();
+  std::vector<char> fixed(skin.topology().storage(), 0);
+  for (const std::size_t k : skin.fixedPoints()) fixed[k] = 1;
   bool finite = true;
-  for (const VectorArray* a : {&state.skin.position, &state.skin.velocity}) {
-    const int fixed = a == &state.skin.velocity ? 1 : 0;
-    for (const FloatArray* axis : {&a->x, &a->y, &a->z})
-      for (int j = fixed; j < g.rows - fixed; ++j)
-        for (int i = 0; i < g.columns; ++i) finite = finite && std::isfinite((*axis)[g.at(i, j)]);
+  for (std::size_t p = 0; p < skin.pointCount(); ++p) {
+    const std::size_t k = skin.storageIndex(p);
+    for (const auto axis : VectorArray::kAxes)
+      finite = finite && std::isfinite((state.skin.position.*axis)[k]) &&
+               (fixed[k] || std::isfinite((state.skin.velocity.*axis)[k]));
   }
   return finite;
 }
@@ -104,7 +106,17 @@ inline bool sameBits(const VectorArray& a, const VectorArray& b) {
 }
 
 // The longest edge over the size of the whole skin: an exploded skin is larger than its body.
+inline double longestTriangleEdge(const Skin& skin, const SkinState& state) {
+  TriangleMesh mesh;
+  skin.topology().surface(state.position, mesh);
+  float longest = 0;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      longest = std::max(longest, (mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]).norm());
+  return double{longest} / skin.size_m();
+}
 inline double longestEdge(const Skin& skin, const SkinState& state) {
+  if (!skin.grid()) return longestTriangleEdge(skin, state);
   const GridLayout& g = skin.grid()->layout();
   const VectorArray& r = state.position;
   float longest = 0;

@@ -88,6 +88,10 @@ Def& objectIn(CharacterDef& def) {
   if constexpr (std::is_same_v<Def, RigDef>) return *def.rig;
   if constexpr (std::is_same_v<Def, SkinGridDef>) return def.skin->grid;
   if constexpr (std::is_same_v<Def, SkinEndDef>) return def.skin->grid.bottom;
+  if constexpr (std::is_same_v<Def, SkinSurfaceDef>) {
+    if (!def.skin->surface) def.skin->surface.emplace();
+    return *def.skin->surface;
+  }
   if constexpr (std::is_same_v<Def, SkinMaterialDef>) return def.skin->material;
   if constexpr (std::is_same_v<Def, SkinFatDef>) return def.skin->fat;
   if constexpr (std::is_same_v<Def, SkinTissueDef>) return def.skin->tissue;
@@ -262,6 +266,7 @@ class Checker {
 json withRigAndParts(json document) {
   document["rig"] = {{"file", "a.glb"}};
   document["skin"]["parts"] = {{{"name", "eyes"}}};
+  document["skin"]["surface"] = json::object();
   return document;
 }
 

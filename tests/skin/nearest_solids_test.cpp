@@ -5,8 +5,8 @@
 
 #include <fascia/base/random.h>
 #include <fascia/math/points.h>
-#include <fascia/skin/grid/attach.h>
-#include <fascia/skin/grid/nearest_solids.h>
+#include <fascia/skin/point/attach.h>
+#include <fascia/skin/point/nearest_solids.h>
 
 #include "support/steep_field.h"
 #include "test_fields.h"
@@ -103,19 +103,20 @@ TEST(NearestSolids, TellsWhetherAnyPointIsNearer) {
 
 TEST(Attach, FollowsTheInwardNormalToTheSurface) {
   const test::RigidSolids field = test::RigidSolids().addSphere(Vec3::Zero(), 0.5);
-  const GridLayout g{8, 8, true};
-  VectorArray points(g.storage()), normals(g.storage());
+  VectorArray points(9), normals(9);
   // Seen from (0.2, 0, 0.6) along −z the sphere begins where x = 0.2; along x it is not met at all.
-  for (int j = 0; j < g.rows; ++j)
-    for (int i = 0; i < g.columns; ++i) {
-      setPoint(points, g.at(i, j), Vec3(0.2, 0, 0.6));
-      setPoint(normals, g.at(i, j), i == 0 ? Vec3::UnitX() : Vec3::UnitZ());
-    }
-  const std::vector<Attachment> found = attachAlongNormals(field, g, points, normals, 0.01);
-  ASSERT_EQ(found.size(), g.pointCount());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    setPoint(points, k, Vec3(0.2, 0, 0.6));
+    setPoint(normals, k, k == 1 ? Vec3::UnitX() : Vec3::UnitZ());
+  }
+  // All points but the first, the last of them first.
+  const PointRun runs[] = {{5, 0, 4}, {1, 4, 4}};
+  const std::vector<Attachment> found = attachAlongNormals(field, runs, points, normals, 0.01);
+  ASSERT_EQ(found.size(), 8u);
   const Vec3 nearest = 0.5 * Vec3(0.2, 0, 0.6).normalized(), met(0.2, 0, std::sqrt(0.21));
-  EXPECT_LT((found[0].place_m - nearest).norm(), 1e-6);
-  for (std::size_t p = 1; p < 8; ++p) EXPECT_LT((found[p].place_m - met).norm(), 2e-4);
+  EXPECT_LT((found[4].place_m - nearest).norm(), 1e-6);
+  for (const std::size_t p : {0, 1, 2, 3, 5, 6, 7})
+    EXPECT_LT((found[p].place_m - met).norm(), 2e-4);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST(SkinBuilder, FixesItsEndRowsToTheirJoints) {
   ASSERT_TRUE(body.build());
   const Skin& skin = *body.skin;
   ASSERT_EQ(skin.grid()->fixed().size(), 2u * 16);
-  for (const GridAttachment::Fixed& f : skin.grid()->fixed()) {
+  for (const FleshAttachment::Fixed& f : skin.grid()->fixed()) {
     EXPECT_EQ(skin.points().free[f.point], 0);
     const Vec3 world = body.posedSkeleton.joint_world[f.joint.index()].point(f.position_joint);
     EXPECT_LT((world - test::at(skin.restPosition(), f.point)).norm(), 1e-6);

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <fascia/geometry/triangle_hierarchy.h>
+#include <fascia/skin/grid/flesh_path.h>
 #include <fascia/skin/grid/wrap.h>
+#include <fascia/skin/skin_fit.h>
 
 #include "test_fields.h"
 
@@ -184,6 +186,87 @@ TEST(ExitPoint, IsWhereTheRayLeavesTheFleshForTheLastTime) {
   EXPECT_LT((p - Vec3(0, 0.73, 0)).norm(), 1e-5);
   EXPECT_LT((exitPoint(field, Vec3::Zero(), -Vec3::UnitY(), 0.03) - Vec3(0, -0.13, 0)).norm(),
             1e-5);
+}
+
+// Balls along an arc in the plane of x and y, and what lies on the way between its ends.
+RigidSolids arcOfBalls(double degrees_along) {
+  RigidSolids field;
+  const int count = static_cast<int>(degrees_along / 9);
+  for (int i = 0; i <= count; ++i) {
+    const double a = radians(degrees_along) * i / count;
+    field.addSphere(0.5 * Vec3(std::cos(a), std::sin(a), 0), 0.08);
+  }
+  return field;
+}
+RigidSolids snakeOfBalls() {
+  RigidSolids field;
+  for (int i = 0; i <= 60; ++i)
+    field.addSphere(Vec3(0.35 * std::sin(2 * kPi * i / 40.0), 0, 0.035 * i), 0.06);
+  return field;
+}
+
+struct PathWrap {
+  GridLayout g{24, 120, true};
+  VectorArray r;
+  TriangleMesh mesh;  // closed
+
+  explicit PathWrap(const RigidSolids& field) {
+    const auto end = [&](std::size_t at, std::size_t next) {
+      const Vec3 here = field.parts[at].world.translation_m;
+      const Vec3 axis = (here - field.parts[next].world.translation_m).normalized();
+      return ring(field, here, axis, 0.02, 0.01);
+    };
+    const std::size_t last = field.parts.size() - 1;
+    r = wrapAlongFlesh(field, g, end(0, 1), end(last, last - 1), {.fat_m = 0.01, .cling = 0.3});
+    mesh = meshOf(g, r);
+    for (const int row : {0, g.rows - 1})
+      for (int i = 1; i + 1 < g.columns; ++i) {
+        const auto first = static_cast<std::uint32_t>(row * g.columns),
+                   a = first + static_cast<std::uint32_t>(i);
+        mesh.triangles.push_back(row == 0 ? std::array{first, a + 1, a}
+                                          : std::array{first, a, a + 1});
+      }
+  }
+};
+
+TEST(WrapAlongFlesh, HoldsArcsAndSnakesWithoutCrossings) {
+  for (const RigidSolids& field :
+       {arcOfBalls(90), arcOfBalls(180), arcOfBalls(270), snakeOfBalls()}) {
+    const PathWrap wrap(field);
+    const SkinFit fit = findSkinFit(field, wrap.mesh);
+    EXPECT_TRUE(fit.outside.empty()) << fit.outside.size();
+    EXPECT_EQ(fit.crossings, 0u);
+    EXPECT_GT(enclosedVolume(wrap.mesh), 0);
+  }
+}
+
+TEST(WrapAlongFlesh, SpreadsItsRowsEvenly) {
+  const PathWrap wrap(arcOfBalls(180));
+  double least = 1e300, most = 0;
+  for (int j = 2; j + 3 < wrap.g.rows; ++j) {
+    Vec3 way = Vec3::Zero();
+    for (int i = 0; i < wrap.g.columns; ++i)
+      way += (test::at(wrap.r, wrap.g.at(i, j + 1)) - test::at(wrap.r, wrap.g.at(i, j))) /
+             wrap.g.columns;
+    least = std::min(least, way.norm()), most = std::max(most, way.norm());
+  }
+  EXPECT_LT(most / least, 2.5);
+}
+
+TEST(PathThroughFlesh, LeadsAlongAnArcAndNotAcross) {
+  const RigidSolids field = arcOfBalls(270);
+  const Vec3 from(0.5, -0.09, 0), to(-0.09, -0.5, 0);
+  const std::vector<Vec3> path = pathThroughFlesh(field, from, to, 50);
+  ASSERT_EQ(path.size(), 50u);
+  EXPECT_LT((path.front() - from).norm(), 1e-12);
+  EXPECT_LT((path.back() - to).norm(), 1e-12);
+  double least = 1e300, most = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    EXPECT_NEAR(path[i].norm(), 0.5, 0.03);
+    least = std::min(least, (path[i] - path[i - 1]).norm());
+    most = std::max(most, (path[i] - path[i - 1]).norm());
+  }
+  EXPECT_LT(most / least, 1.05);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fascia/character/idle_settings.h>
 #include <fascia/flesh/bind.h>
 #include <fascia/skin/ode_skin.h>
+#include <fascia/skin/skin_fit.h>
 
 namespace fascia {
 namespace {
@@ -75,6 +76,9 @@ CharacterParts CharacterBuilder::build() {
   if (hasFlesh) makeSkin();
   diagnostics_.throwIfErrors();
   warnOfIdleSettings(def(), diagnostics_);
+  if (parts_.skin && parts_.skin->fit())
+    warnOfSkinFit(*parts_.skin->fit(), *parts_.flesh, parts_.skin->grid() != nullptr, "/skin",
+                  diagnostics_);
   parts_.warnings = diagnostics_.warnings();
   return std::move(parts_);
 }

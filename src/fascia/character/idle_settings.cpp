@@ -8,15 +8,16 @@ namespace fascia {
 namespace {
 
 constexpr IdleReason kNoFatModel = {"no skin presses its fat together", "leave it out"};
-constexpr IdleReason kGridFat = {"only the fat of a rig's simulated skin has a pressure",
-                                 "leave it out"};
-constexpr IdleReason kGridPose = {"a grid is no function of its joints", "leave it out"};
+constexpr IdleReason kGridFat = {"the fat of a grid has no pressure", "leave it out"};
+constexpr IdleReason kGridPose = {"only a rig's skin is a function of its joints", "leave it out"};
 constexpr IdleReason kMeshWrap = {"a rig's mesh is not wrapped around the flesh", "leave it out"};
 constexpr IdleReason kMeshAnchors = {"a rig's mesh hangs on its own pose, not on solids",
                                      "leave them out"};
 constexpr IdleReason kMeshContact = {"limbs of a rig's skin press on each other by themselves",
                                      "leave it out"};
 constexpr IdleReason kMeshFriction = {"a rig's skin does not slide on its flesh", "leave it out"};
+constexpr IdleReason kSurfaceWrap = {"a skin on its solids' surface is no tube",
+                                     "leave it out, or leave out \"surface\""};
 constexpr IdleReason kPosedSkin = {"this rig's skin is posed, not simulated",
                                    "set \"pose\": {\"simulate\": true}, or leave it out"};
 constexpr IdleReason kFixedScheme = {"the fast schemes choose their own steps",
@@ -29,6 +30,7 @@ class Idle {
       : def_(def),
         diagnostics_(diagnostics),
         onRig_(def.rig.has_value()),
+        onSurface_(!onRig_ && def.skin && def.skin->surface),
         simulated_(def.skin && (!onRig_ || def.skin->mesh.pose.simulate)) {}
 
   void warn() const {
@@ -51,10 +53,19 @@ class Idle {
     if (onRig_) {
       warnOfMesh(skin);
     } else {
-      rows(skin.fat, "/skin/fat", {"bulk_Pa"}, kGridFat);
+      if (!onSurface_) rows(skin.fat, "/skin/fat", {"bulk_Pa"}, kGridFat);
       rows(skin.mesh.pose, "/skin/pose", {}, kGridPose);
     }
+    if (onSurface_) warnOfSurface(skin);
     warnOfQuantities(skin);
+  }
+
+  void warnOfSurface(const SkinDef& skin) const {
+    const SkinGridDef standard;
+    if (skin.grid.columns != standard.columns || skin.grid.rows != standard.rows)
+      one("/skin/grid", kSurfaceWrap);
+    rows(skin.grid, "/skin", {"cling"}, kSurfaceWrap);
+    if (!skin.grid.anchors.empty()) one("/skin/anchors", kSurfaceWrap);
   }
 
   void warnOfMesh(const SkinDef& skin) const {
@@ -115,7 +126,7 @@ class Idle {
 
   const CharacterDef& def_;
   Diagnostics& diagnostics_;
-  bool onRig_, simulated_;
+  bool onRig_, onSurface_, simulated_;
 };
 
 }  // namespace

@@ -38,6 +38,7 @@ bool sameMesh(const Skin& a, const Skin& b) {
 // Whether an entry of per-point arrays means the same point in both.
 bool samePoints(const Skin& a, const Skin& b) {
   if (a.grid() && b.grid()) return sameLayout(a.grid()->layout(), b.grid()->layout());
+  if (a.surface() && b.surface()) return a.parts().shape == b.parts().shape;
   return sameMesh(a, b) && a.isSimulated() == b.isSimulated() &&
          a.parts().meshRest->order == b.parts().meshRest->order;
 }

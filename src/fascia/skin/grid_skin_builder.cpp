@@ -7,11 +7,13 @@
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/contact/face_lift.h>
-#include <fascia/skin/grid/attach.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/resample.h>
+#include <fascia/skin/point/attach.h>
 #include <fascia/skin/point/face_samples.h>
 #include <fascia/skin/point/leapfrog.h>
+#include <fascia/skin/point/nearest_solids.h>
+#include <fascia/skin/skin_fit.h>
 
 namespace fascia {
 namespace {
@@ -35,6 +37,17 @@ void forEachPoint(const GridLayout& g, const Visit& visit) {
     for (int i = 0; i < g.columns; ++i) visit(i, j, g.at(i, j));
 }
 
+// Rows in pieces that lie together.
+std::vector<PointRun> runsOf(const GridLayout& g) {
+  std::vector<PointRun> runs;
+  const auto columns = static_cast<std::size_t>(g.columns);
+  for (int j = 0; j < g.rows; ++j)
+    for (std::size_t i = 0; i < columns; i += NearestSolids::kBlock)
+      runs.push_back({g.row(j) + i, static_cast<std::size_t>(j) * columns + i,
+                      std::min(NearestSolids::kBlock, columns - i)});
+  return runs;
+}
+
 std::vector<std::array<std::uint32_t, 3>> cellTriangles(const GridLayout& g) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(g.at(g.wrapped(i), j)); };
@@ -44,6 +57,25 @@ std::vector<std::array<std::uint32_t, 3>> cellTriangles(const GridLayout& g) {
       triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
   return triangles;
+}
+
+// With a fan over each of its ends. Vertices are storage indices, and the two centres.
+TriangleMesh closedTube(const GridLayout& g, const VectorArray& r) {
+  TriangleMesh mesh;
+  for (std::size_t k = 0; k < r.size(); ++k) mesh.positions.push_back(floatPointAt(r, k));
+  mesh.triangles = cellTriangles(g);
+  for (const int row : {0, g.rows - 1}) {
+    Vec3 center = Vec3::Zero();
+    for (int i = 0; i < g.columns; ++i) center += pointAt(r, g.at(i, row)) / g.columns;
+    const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(center.cast<float>());
+    for (int i = 0; i < g.columns; ++i) {
+      const auto a = static_cast<std::uint32_t>(g.at(i, row)),
+                 b = static_cast<std::uint32_t>(g.at(g.wrapped(i + 1), row));
+      mesh.triangles.push_back(row == 0 ? std::array{middle, b, a} : std::array{middle, a, b});
+    }
+  }
+  return mesh;
 }
 
 }  // namespace
@@ -62,7 +94,18 @@ SkinParts GridSkinBuilder::build() {
   if (settings_.integrator == "auto" && def_.tissue.stiffness_N_per_m3 > 0 &&
       parts_.defaultStep_s < kFinestStep_s && layout_.pointCount() >= 2 * kCoarsePoints)
     makeCoarse();
+  findFit();
   return std::move(parts_);
+}
+
+// While a rest shape follows edits, what it was wrapped around stays inside.
+void GridSkinBuilder::findFit() {
+  if (before_ && before_->gridRest->wrap == parts_.gridRest->wrap) {
+    parts_.fit = before_->fit;
+    return;
+  }
+  parts_.fit =
+      std::make_shared<SkinFit>(findSkinFit(base_.posedFlesh, closedTube(layout_, rest())));
 }
 
 bool GridSkinBuilder::checkGrid() const {
@@ -226,10 +269,22 @@ bool GridSkinBuilder::isSaved() const {
   return def_.points && !def_.points->rest_position_m.empty();
 }
 
+// A straight tube, or one along the way through the flesh where that holds more of it.
+VectorArray GridSkinBuilder::wrappedFlesh(const EndRing (&ends)[2]) const {
+  const WrapOptions options{def_.fat.thickness_m, def_.grid.cling};
+  const auto faults = [&](const VectorArray& tube) {
+    const SkinFit fit = findSkinFit(base_.posedFlesh, closedTube(layout_, tube));
+    return std::pair(fit.outside.size(), fit.crossings);
+  };
+  VectorArray straight = shrinkWrap(base_.posedFlesh, layout_, ends[0], ends[1], options);
+  const auto ofStraight = faults(straight);
+  if (ofStraight == std::pair<std::size_t, std::size_t>(0, 0)) return straight;
+  VectorArray along = wrapAlongFlesh(base_.posedFlesh, layout_, ends[0], ends[1], options);
+  return faults(along) < ofStraight ? along : straight;
+}
+
 VectorArray GridSkinBuilder::wrappedShape(const EndRing (&ends)[2]) const {
-  if (!isSaved())
-    return shrinkWrap(base_.posedFlesh, layout_, ends[0], ends[1],
-                      {def_.fat.thickness_m, def_.grid.cling});
+  if (!isSaved()) return wrappedFlesh(ends);
   const GridLayout saved = savedLayout();
   VectorArray r(saved.storage());
   std::size_t p = 0;
@@ -242,7 +297,7 @@ VectorArray GridSkinBuilder::wrappedShape(const EndRing (&ends)[2]) const {
 }
 
 void GridSkinBuilder::placePoints(GridWrap& wrap) const {
-  const std::vector<SolidId> solids = nearestSolids(wrap.posedFlesh, layout_, wrap.rest);
+  const std::vector<SolidId> solids = nearestSolids(wrap.posedFlesh, runsOf(layout_), wrap.rest);
   wrap.placements.resize(solids.size());
   const auto columns = static_cast<std::size_t>(layout_.columns);
   parallelFor(solids.size() / columns, [&](std::size_t row) {
@@ -264,7 +319,7 @@ void GridSkinBuilder::attach(GridWrap& wrap) const {
   if (!saved) {
     VectorArray normals(layout_.storage());
     gridNormals(layout_, wrap.rest, 0, layout_.rows, normals);
-    found = attachAlongNormals(wrap.posedFlesh, layout_, wrap.rest, normals, wrap.fat_m);
+    found = attachAlongNormals(wrap.posedFlesh, runsOf(layout_), wrap.rest, normals, wrap.fat_m);
   }
   const auto columns = static_cast<std::size_t>(layout_.columns);
   const auto inner = static_cast<std::size_t>(layout_.rows - 2);
@@ -298,13 +353,13 @@ void GridSkinBuilder::setRest(std::shared_ptr<const GridWrap> wrap, GridRestKey 
           {layout_.at(i, j),
            std::min<std::uint32_t>(PointBlock::kCapacity,
                                    static_cast<std::uint32_t>(layout_.columns - i))});
-  std::vector<GridAttachment::Fixed> fixed = fixEnds(*shape);
+  std::vector<FleshAttachment::Fixed> fixed = fixEnds(*shape);
 
   overrideAnchors(followed.anchors);
   std::erase_if(followed.anchors, [](const TissueAnchors::Anchor& a) { return !a.solid.valid(); });
-  attachment_ = std::make_shared<GridAttachment>(TissueAnchors(std::move(followed.anchors)),
-                                                 TissueAnchors(std::move(followed.placements)),
-                                                 std::move(fixed));
+  attachment_ = std::make_shared<FleshAttachment>(TissueAnchors(std::move(followed.anchors)),
+                                                  TissueAnchors(std::move(followed.placements)),
+                                                  std::move(fixed));
   parts_.attachment = attachment_;
   parts_.gridRest = std::make_shared<GridRest>(
       GridRest{std::move(wrap), std::move(key), pointAreas(layout_, shape->rest)});
@@ -317,8 +372,8 @@ double GridSkinBuilder::sizeOf(const VectorArray& rest) const {
   return std::max(1e-6, box.size().norm());
 }
 
-std::vector<GridAttachment::Fixed> GridSkinBuilder::fixEnds(SkinShape& shape) const {
-  std::vector<GridAttachment::Fixed> fixed;
+std::vector<FleshAttachment::Fixed> GridSkinBuilder::fixEnds(SkinShape& shape) const {
+  std::vector<FleshAttachment::Fixed> fixed;
   for (int e = 0; e < 2; ++e) {
     const Transform inverse = jointFrame(e).inverse();
     for (int i = 0; i < layout_.columns; ++i) {
@@ -420,7 +475,8 @@ void GridSkinBuilder::applyEdits() {
   });
   for (const TissueAnchors::Anchor& a : attachment_->anchors().anchors())
     points[numbers[a.point]].solid = a.solid;
-  applySkinEdits(def_, base_, report_, points, nullptr, rest(), changes_, *quantities_);
+  applySkinEdits(def_, base_, report_, points, {SkinKind::grid, {}}, rest(), changes_,
+                 *quantities_);
 }
 
 // The surface's own forces; those of the skin before if nothing that they are made of has changed.

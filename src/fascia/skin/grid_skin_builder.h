@@ -42,12 +42,13 @@ class GridSkinBuilder {
   std::shared_ptr<const GridWrap> wrapAnew(const GridWrapKey& key, const EndRing (&ends)[2]) const;
   bool isSaved() const;
   void liftRest(const FaceSamples& faces, GridWrap& wrap) const;
+  VectorArray wrappedFlesh(const EndRing (&ends)[2]) const;
   VectorArray wrappedShape(const EndRing (&ends)[2]) const;
   void placePoints(GridWrap& wrap) const;
   void attach(GridWrap& wrap) const;
   void overrideAnchors(std::vector<TissueAnchors::Anchor>& anchors) const;
   double sizeOf(const VectorArray& rest) const;  // diagonal of its box
-  std::vector<GridAttachment::Fixed> fixEnds(SkinShape& shape) const;
+  std::vector<FleshAttachment::Fixed> fixEnds(SkinShape& shape) const;
   void findSource();
   bool keepsQuantity(SkinQuantity quantity) const;
   void setQuantities();
@@ -57,6 +58,7 @@ class GridSkinBuilder {
   void makeModel();
   void makeSelfContact();
   void makeCoarse();
+  void findFit();
 
   const VectorArray& rest() const { return parts_.shape->rest; }
   const Transform& jointFrame(int end) const {
@@ -76,7 +78,7 @@ class GridSkinBuilder {
   JointId joint_[2];   // of the bottom and top end
   double size_m_ = 0;  // 0: of the rest shape's own box
   SkinParts parts_;
-  std::shared_ptr<const GridAttachment> attachment_;
+  std::shared_ptr<const FleshAttachment> attachment_;
   QuantityMask changes_{};  // quantities that are not those of the skin before
   std::shared_ptr<SkinQuantities> quantities_ = std::make_shared<SkinQuantities>();
 };

@@ -6,6 +6,7 @@
 
 #include <fascia/pose/softness.h>
 #include <fascia/skin/grid/grid_layout.h>
+#include <fascia/skin/mesh/point_order.h>
 
 namespace fascia {
 namespace {
@@ -21,28 +22,6 @@ constexpr float kFeltWeight = 0.05f;
 constexpr double kSlideOfFat = 0.6, kLeastSlide = 0.0015;
 // Pieces with a smaller share of the model's size are carried as they are.
 constexpr double kSmallPiece = 0.04;
-
-// Sorts [first, last) into compact runs of whole blocks: halves along the longest side, in whole
-// blocks, until one is left.
-void sortIntoBlocks(const RiggedModel& rig, std::uint32_t* first, std::uint32_t* last) {
-  const auto count = static_cast<std::size_t>(last - first);
-  if (count <= PointBlock::kCapacity) {
-    std::sort(first, last);
-    return;
-  }
-  Box box;
-  for (const std::uint32_t* p = first; p != last; ++p) box.add(rig.points_m[*p].cast<double>());
-  Eigen::Index axis;
-  box.size().maxCoeff(&axis);
-  const std::size_t blocks = (count + PointBlock::kCapacity - 1) / PointBlock::kCapacity;
-  std::uint32_t* middle = first + (blocks / 2) * PointBlock::kCapacity;
-  std::nth_element(first, middle, last, [&](std::uint32_t a, std::uint32_t b) {
-    const float x = rig.points_m[a][axis], y = rig.points_m[b][axis];
-    return x < y || (x == y && a < b);
-  });
-  sortIntoBlocks(rig, first, middle);
-  sortIntoBlocks(rig, middle, last);
-}
 
 // Points on edges that only one triangle has: eyes, mouth, cuffs, the hem of an open sheet.
 std::vector<char> borderPoints(const RiggedModel& rig) {
@@ -236,7 +215,7 @@ void MeshSkinBuilder::orderPoints() {
   const auto fixed = std::stable_partition(making_->order.begin(), making_->order.end(),
                                            [&](std::uint32_t p) { return !making_->fixed[p]; });
   making_->elasticCount = static_cast<std::size_t>(fixed - making_->order.begin());
-  sortIntoBlocks(rig_, making_->order.data(), making_->order.data() + making_->elasticCount);
+  sortIntoBlocks(rig_.points_m, std::span(making_->order).first(making_->elasticCount));
   making_->storageOf.resize(making_->order.size());
   for (std::size_t k = 0; k < making_->order.size(); ++k)
     making_->storageOf[making_->order[k]] = static_cast<std::uint32_t>(k);

@@ -113,7 +113,9 @@ void MeshSkinBuilder::setQuantities() {
                       &rig_.weights[rest_->order[k]]});
   QuantityMask all;
   all.fill(true);
-  applySkinEdits(def_, base_, report_, points, &rig_, shape_->rest, all, q);
+  std::vector<std::string> joints;
+  for (const RigJoint& joint : rig_.joints) joints.push_back(joint.name);
+  applySkinEdits(def_, base_, report_, points, {SkinKind::rig, joints}, shape_->rest, all, q);
 }
 
 }  // namespace fascia

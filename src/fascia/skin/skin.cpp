@@ -7,6 +7,7 @@
 #include <fascia/skin/grid/resample.h>
 #include <fascia/skin/grid_skin_builder.h>
 #include <fascia/skin/mesh_skin_builder.h>
+#include <fascia/skin/surface_skin_builder.h>
 
 namespace fascia {
 namespace {
@@ -31,6 +32,9 @@ const VectorArray& shown(const Skin& skin, const DistanceField& flesh, const Ski
 SkinParts build(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
                 const Skin* before, const std::string& pointer, Diagnostics& diagnostics) {
   if (base.rig) return MeshSkinBuilder(def, settings, base, before, pointer, diagnostics).build();
+  if (before && (before->surface() != nullptr) != def.surface.has_value()) before = nullptr;
+  if (def.surface)
+    return SurfaceSkinBuilder(def, settings, base, before, pointer, diagnostics).build();
   return GridSkinBuilder(def, settings, base, before, pointer, diagnostics).build();
 }
 

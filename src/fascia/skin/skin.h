@@ -57,7 +57,9 @@ struct GridSkin;
 struct GridRest;
 struct GridQuantitySource;
 struct MeshRest;
+struct SurfaceRest;
 struct RiggedSkin;
+struct SkinFit;
 class Skin;
 
 // The rest shape, and what follows from it alone.
@@ -81,12 +83,14 @@ struct SkinParts {
   std::shared_ptr<const SelfContactModel> selfContact;
   std::shared_ptr<const FatPressureModel> fatPressure;
   std::shared_ptr<const Skin> coarse;
+  std::shared_ptr<const SkinFit> fit;  // as it was laid around the flesh; none of a rig's mesh
   // Of one kind of skin only:
   std::shared_ptr<const GridSkin> grid;
   std::shared_ptr<const GridRest> gridRest;
   std::shared_ptr<const GridQuantitySource> gridQuantitySource;  // none of a coarse one's
   std::shared_ptr<const RiggedSkin> rigged;
   std::shared_ptr<const MeshRest> meshRest;
+  std::shared_ptr<const SurfaceRest> surfaceRest;
   bool simulated = true;
 };
 
@@ -96,7 +100,7 @@ class Skin {
  public:
   // Reports every fault of `def` with pointers below `pointer`; with errors the result must not be
   // used. A grid shrink-wraps the flesh unless `def.points` brings a rest shape. Parts of the skin
-  // that it was edited from (`before`, around the same rig if any) are taken over where nothing
+  // that it was edited from (`before`, on the same rig if any) are taken over where nothing
   // that they are made of has changed; the rest shape of a grid then follows solids and joints
   // instead of being wrapped anew.
   Skin(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
@@ -113,9 +117,11 @@ class Skin {
   std::size_t pointCount() const { return topology().pointCount(); }
   std::size_t storageIndex(std::size_t p) const { return topology().storageIndex(p); }
 
-  // What only one kind has; nullptr: it is the other kind. See grid_skin.h and rigged_skin.h.
+  // What only one kind has; nullptr: it is another kind. See grid_skin.h, rigged_skin.h and
+  // surface_rest.h.
   const GridSkin* grid() const { return parts_.grid.get(); }
   const RiggedSkin* rigged() const { return parts_.rigged.get(); }
+  const SurfaceRest* surface() const { return parts_.surfaceRest.get(); }
 
   const SkinSettings& settings() const { return settings_; }
   const PointModel& points() const { return *parts_.points; }
@@ -131,6 +137,8 @@ class Skin {
   double size_m() const { return parts_.shape->size_m; }  // diagonal of the rest shape's box
   const SelfContactModel* selfContact() const { return parts_.selfContact.get(); }  // or nullptr
   const FatPressureModel* fatPressure() const { return parts_.fatPressure.get(); }  // or nullptr
+  // How it holds the flesh that it was laid around; nullptr: it was not made from that.
+  const SkinFit* fit() const { return parts_.fit.get(); }
 
   // Whether it is stepped through time; else it follows from a pose, but for its jiggle.
   bool isSimulated() const { return parts_.simulated; }

@@ -32,7 +32,7 @@ double inRange(double x, double low, double high, double feather, bool periodic)
 }
 
 float shareOf(const SkinRegionDef& region, SolidId solid, int joint, const EditPoint& p) {
-  FASCIA_ASSERT(joint < 0 || p.weights, "a rig's points have weights");
+  FASCIA_ASSERT(joint < 0 || p.weights, "points that are asked by joint have weights");
   if (joint >= 0) {
     float share = 0;
     for (std::size_t k = 0; k < PointWeights::kMost; ++k)
@@ -45,10 +45,25 @@ float shareOf(const SkinRegionDef& region, SolidId solid, int joint, const EditP
   return static_cast<float>(inRange(p.u, region.u_min, region.u_max, region.feather, true) * along);
 }
 
-int findRigJoint(const RiggedModel& rig, const std::string& name) {
-  for (std::size_t j = 0; j < rig.joints.size(); ++j)
-    if (rig.joints[j].name == name) return static_cast<int>(j);
-  return -1;
+int findJointOf(const EditedSkin& skin, const std::string& name) {
+  const auto found = std::find(skin.joints.begin(), skin.joints.end(), name);
+  return found == skin.joints.end() ? -1 : static_cast<int>(found - skin.joints.begin());
+}
+
+// What is wrong with a region that names a joint which no point has a weight for.
+void reportRegionJoint(const SkinReport& report, const std::string& where, const EditedSkin& skin,
+                       const std::string& name) {
+  switch (skin.kind) {
+    case SkinKind::grid:
+      report.error(where, "a grid has no weights: found a region by joint",
+                   "name a solid, or give u and v");
+      return;
+    case SkinKind::rig:
+      report.error(where, "found no joint '" + name + "' in the rig", "'fascia info' lists them");
+      return;
+    case SkinKind::surface:
+      report.findJoint(where, name);
+  }
 }
 
 double edited(const SkinRegionDef::Edit& edit, double old) {
@@ -82,7 +97,7 @@ std::optional<Vec3> brushCenter(const SkinBrushDef& brush, const SkinBase& base)
 }
 
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
-                    std::span<const EditPoint> points, const RiggedModel* rig,
+                    std::span<const EditPoint> points, const EditedSkin& skin,
                     const VectorArray& rest, const QuantityMask& changes,
                     SkinQuantities& quantities) {
   const auto isChanged = [&](SkinQuantity q) { return changes[static_cast<std::size_t>(q)]; };
@@ -91,20 +106,17 @@ void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& 
     const std::string where = "/regions/" + std::to_string(n);
     int joint = -1;
     if (!region.joint.empty()) {
-      joint = rig ? findRigJoint(*rig, region.joint) : -1;
+      joint = findJointOf(skin, region.joint);
       if (joint < 0) {
-        report.error(where + "/joint",
-                     rig ? "found no joint '" + region.joint + "' in the rig"
-                         : "a grid has no weights: found a region by joint",
-                     rig ? "'fascia info' lists them" : "name a solid, or give u and v");
+        reportRegionJoint(report, where + "/joint", skin, region.joint);
         continue;
       }
-    } else if (region.solid.empty() && rig) {
+    } else if (region.solid.empty() && skin.kind != SkinKind::grid) {
       report.error(where, "found a region without a joint or a solid",
-                   "an imported mesh has no u and v along and around: name a joint");
+                   "only a grid has u and v along and around: name a joint");
       continue;
     }
-    if (!rig && region.solid.empty() && !(region.v_min <= region.v_max))
+    if (skin.kind == SkinKind::grid && region.solid.empty() && !(region.v_min <= region.v_max))
       report.error(where + "/v", "found the larger number first",
                    "only u goes around; v runs upwards");
     SolidId solid;

@@ -20,8 +20,8 @@ class SkinReport {
   void error(const std::string& where, std::string message, std::string hint = {}) const;
   // Of a grid: columns or rows.
   bool checkSide(const std::string& where, int side) const;
-  // Everything that has a range, whatever the skin lies on.
-  void checkValues(const SkinDef& def) const;
+  // Everything that has a range, whatever the skin lies on. True: all is within it.
+  bool checkValues(const SkinDef& def) const;
   // Saved per-point lists: `count` values within their ranges each, or none.
   bool checkPointLists(const SkinPointsDef& points, std::size_t count,
                        const std::string& expected) const;
@@ -46,17 +46,22 @@ NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p,
                           std::span<const SolidId> solids);
 NearestFlesh nearestFlesh(const DistanceField& field, const Vec3& p);  // of all
 
-// Regions and brushes on the points of a skin. A rig has weights, a grid (rig = nullptr) u and v.
+// Regions and brushes on the points of a skin. A grid has u and v; others have weights.
 struct EditPoint {
   std::size_t point;                      // storage index
   double u, v;                            // material coordinates; not read if the skin has none
   SolidId solid;                          // that the point is tied to; invalid: none
-  const PointWeights* weights = nullptr;  // of an imported mesh, by joints of the rig
+  const PointWeights* weights = nullptr;  // not of a grid; by the numbers of EditedSkin::joints
+};
+enum class SkinKind { grid, rig, surface };
+struct EditedSkin {
+  SkinKind kind;
+  std::span<const std::string> joints;  // that points have weights for
 };
 // Only quantities that `changes` are touched.
 using QuantityMask = std::array<bool, kSkinQuantities>;
 void applySkinEdits(const SkinDef& def, const SkinBase& base, const SkinReport& report,
-                    std::span<const EditPoint> points, const RiggedModel* rig,
+                    std::span<const EditPoint> points, const EditedSkin& skin,
                     const VectorArray& rest, const QuantityMask& changes,
                     SkinQuantities& quantities);
 // Where a brush is in the rest posture; none if its joint is not found.

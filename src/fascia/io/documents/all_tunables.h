@@ -16,6 +16,7 @@ void forEachCharacterTable(const Visit& visit) {
   visit(std::type_identity<RigDef>(), "/rig");
   visit(std::type_identity<SkinGridDef>(), "/skin");
   visit(std::type_identity<SkinEndDef>(), "/skin/bottom");
+  visit(std::type_identity<SkinSurfaceDef>(), "/skin/surface");
   visit(std::type_identity<SkinMaterialDef>(), "/skin/material");
   visit(std::type_identity<SkinFatDef>(), "/skin/fat");
   visit(std::type_identity<SkinTissueDef>(), "/skin/tissue");

@@ -43,7 +43,8 @@ CodecPtr<RigDef> rigCodec() {
   return codec;
 }
 
-// What a skin holds depends on where its surface comes from: a rig, or a grid between two ends.
+// What a skin holds depends on where its surface comes from: a rig, the solids, or a grid between
+// two ends.
 class CharacterCodec final : public ObjectCodec<CharacterDef> {
  public:
   using ObjectCodec::ObjectCodec;
@@ -54,39 +55,53 @@ class CharacterCodec final : public ObjectCodec<CharacterDef> {
     const Json* skin = json.find("skin");
     if (!skin || !skin->is(Json::Kind::object)) return;
     const JsonPath at = path["skin"];
-    const bool onRig = json.find("rig");
-    if (!onRig)
-      for (const char* key : kEnds)
-        if (!skin->find(key))
-          reading.fault(*skin, at, "the key " + shown(key) + " is missing",
-                        "where the skin's tube ends; not needed with \"rig\"");
-    for (const char* key : onRig ? kOfGrids : kOfRigs)
+    const SkinKeys& keys = json.find("rig") ? onRig_ : skin->find("surface") ? onSurface_ : onGrid_;
+    for (const char* key : keys.needed)
+      if (!skin->find(key))
+        reading.fault(*skin, at, "the key " + shown(key) + " is missing",
+                      "where the skin's tube ends; not needed with \"rig\" or \"surface\"");
+    for (const char* key : keys.surplus)
       if (const Json* surplus = skin->find(key))
-        reading.fault(*surplus, at[key],
-                      shown(key) + (onRig ? " does not go with \"rig\"" : " needs a \"rig\""),
-                      onRig ? "the rig's mesh is the skin" : "a grid has no pieces");
+        reading.fault(*surplus, at[key], shown(key) + keys.surplusText, keys.hint);
   }
 
   Json schema() const override {
     Json out = ObjectCodec::schema();
-    Json onRig = requiring({"rig"}), onGrid;
-    onRig.set("properties", Json::Object{{"skin", withoutAny(kOfGrids)}});
-    Json grid = withoutAny(kOfRigs);
-    grid.set("required", listOfTexts(kEnds));
-    onGrid.set("not", requiring({"rig"}));
-    onGrid.set("properties", Json::Object{{"skin", std::move(grid)}});
-    out.set("anyOf", Json::List{std::move(onRig), std::move(onGrid)});
+    Json onRig = requiring({"rig"}), onSolids;
+    onRig.set("properties", Json::Object{{"skin", withoutAny(onRig_.surplus)}});
+    Json surface = withoutAny(onSurface_.surplus), grid = withoutAny(onGrid_.surplus);
+    surface.set("required", Json::List{"surface"});
+    grid.set("required", listOfTexts(onGrid_.needed));
+    onSolids.set("not", requiring({"rig"}));
+    onSolids.set(
+        "properties",
+        Json::Object{
+            {"skin", Json::Object{{"anyOf", Json::List{std::move(surface), std::move(grid)}}}}});
+    out.set("anyOf", Json::List{std::move(onRig), std::move(onSolids)});
     return out;
   }
 
  private:
-  using Keys = std::initializer_list<const char*>;
-  static constexpr Keys kEnds = {"bottom", "top"}, kOfGrids = {"grid", "bottom", "top"},
-                        kOfRigs = {"parts"};
+  using Keys = std::vector<const char*>;
+  struct SkinKeys {
+    Keys needed, surplus;
+    const char* surplusText;  // after the key
+    const char* hint;
+  };
+  const SkinKeys onRig_{{},
+                        {"grid", "bottom", "top", "surface"},
+                        " does not go with \"rig\"",
+                        "the rig's mesh is the skin"};
+  const SkinKeys onSurface_{{},
+                            {"grid", "bottom", "top", "parts"},
+                            " does not go with \"surface\"",
+                            "this skin has no ends and no pieces"};
+  const SkinKeys onGrid_{
+      {"bottom", "top"}, {"parts", "surface"}, " needs a \"rig\"", "a grid has no pieces"};
 
-  static Json::List listOfTexts(Keys keys) { return Json::List(keys.begin(), keys.end()); }
-  static Json requiring(Keys keys) { return Json::Object{{"required", listOfTexts(keys)}}; }
-  static Json withoutAny(Keys keys) {
+  static Json::List listOfTexts(const Keys& keys) { return Json::List(keys.begin(), keys.end()); }
+  static Json requiring(const Keys& keys) { return Json::Object{{"required", listOfTexts(keys)}}; }
+  static Json withoutAny(const Keys& keys) {
     Json::List each;
     for (const char* key : keys) each.push_back(requiring({key}));
     return Json::Object{{"not", Json::Object{{"anyOf", std::move(each)}}}};

@@ -135,10 +135,18 @@ CodecPtr<SkinPartDef> partCodec() {
 
 class SkinCodec final : public ObjectCodec<SkinDef> {
  public:
-  SkinCodec() : ObjectCodec("The elastic skin: the rig's mesh, or a tube between two joints.") {
+  SkinCodec()
+      : ObjectCodec(
+            "The elastic skin: the rig's mesh, the surface of all solids, or a tube between two "
+            "joints.") {
     using S = SkinDef;
-    field("bottom", &S::grid, &SkinGridDef::bottom, endCodec(), "The first row; none on a rig");
-    field("top", &S::grid, &SkinGridDef::top, endCodec(), "The last row; none on a rig");
+    field("bottom", &S::grid, &SkinGridDef::bottom, endCodec(), "The first row; of a tube");
+    field("top", &S::grid, &SkinGridDef::top, endCodec(), "The last row; of a tube");
+    field("surface", &S::surface,
+          optionally(tunablesCodec<SkinSurfaceDef>(
+              "Triangles around the surface of all solids together, for any figure: in place of "
+              "grid, bottom and top.")),
+          "");
     field("material", &S::material,
           tunablesCodec<SkinMaterialDef>("Per square metre of skin at rest."), "");
     field("fat", &S::fat, tunablesCodec<SkinFatDef>("Between flesh and skin."), "");

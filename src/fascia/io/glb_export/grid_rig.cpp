@@ -91,8 +91,8 @@ void check(const GridRig& rig, const Recording& recording) {
 }  // namespace
 
 GridRig gridRigOf(const Character& character) {
-  if (!character.skin() || !character.skin()->grid())
-    throw Error("the character has no skin on a grid");
+  if (!character.skin() || character.skin()->rigged())
+    throw Error("the character has no skin on its solids");
   if (character.skeleton().jointCount() > 0xffff) throw Error("there are too many joints");
   const CharacterState rest = initialState(character, character.source(-1));
   GridRig rig;

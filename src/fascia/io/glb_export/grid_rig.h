@@ -9,7 +9,8 @@
 
 namespace fascia {
 
-// A character whose skin is a grid, as if it were a rigged mesh: what the ways of baking ask for.
+// A character whose skin lies on its solids (a grid, or their surface), as if it were a rigged
+// mesh: what the ways of baking ask for.
 struct GridRig {
   std::vector<Transform> rest_world;  // per joint of the skeleton, in the rest posture
   TriangleMesh surface;               // as it is drawn, settled in the rest posture, with normals

@@ -4,13 +4,15 @@
 
 #include <fascia/base/hash.h>
 #include <fascia/skin/grid/grid_skin.h>
+#include <fascia/skin/surface/surface_rest.h>
 
 namespace fascia {
 namespace {
 
-enum class SkinKind : std::uint64_t { none, grid, simulatedMesh, posedMesh };
-constexpr std::array<const char*, 4> kSkinKinds{"none", "a grid", "a mesh that is simulated",
-                                                "a mesh that follows its pose"};
+enum class StateKind : std::uint64_t { none, grid, simulatedMesh, posedMesh, surface };
+constexpr std::array<const char*, 5> kStateKinds{"none", "a grid", "a mesh that is simulated",
+                                                 "a mesh that follows its pose",
+                                                 "the surface of its solids"};
 
 // One number that has to be the same. Those that only tell things apart are hashes.
 struct StateTrait {
@@ -31,18 +33,23 @@ std::uint64_t hashOfNames(const CharacterDef& def) {
   return hash.value();
 }
 
-std::uint64_t hashOfMesh(const CharacterDef& def) {
+std::uint64_t hashOfMesh(const CharacterDef& def, const Skin* skin) {
   StateHash hash;
+  if (skin && skin->surface()) {
+    const auto& triangles = skin->surface()->triangles;
+    hash.add(triangles.data(), triangles.size() * sizeof triangles.front());
+  }
   if (!def.rig || !def.rig->model) return hash.value();
   const auto& triangles = def.rig->model->triangles;
   hash.add(triangles.data(), triangles.size() * sizeof triangles.front());
   return hash.value();
 }
 
-SkinKind kindOf(const Skin* skin) {
-  if (!skin) return SkinKind::none;
-  if (skin->grid()) return SkinKind::grid;
-  return skin->isSimulated() ? SkinKind::simulatedMesh : SkinKind::posedMesh;
+StateKind kindOf(const Skin* skin) {
+  if (!skin) return StateKind::none;
+  if (skin->grid()) return StateKind::grid;
+  if (skin->surface()) return StateKind::surface;
+  return skin->isSimulated() ? StateKind::simulatedMesh : StateKind::posedMesh;
 }
 
 auto traitsOf(const Character& character) {
@@ -63,7 +70,7 @@ auto traitsOf(const Character& character) {
       {Meaning::count, "skin points", points},
       {Meaning::count, "skin points around", columns},
       {Meaning::count, "skin points along", rows},
-      {Meaning::mesh, "", hashOfMesh(character.def())},
+      {Meaning::mesh, "", hashOfMesh(character.def(), skin)},
   }};
 }
 
@@ -79,8 +86,9 @@ std::string difference(const StateTrait& ours, std::uint64_t found) {
     case StateTrait::Meaning::kind:
       break;
   }
-  if (found >= kSkinKinds.size()) return "its skin is of no known kind";
-  return std::string("its skin is ") + kSkinKinds[found] + ", this one's " + kSkinKinds[ours.value];
+  if (found >= kStateKinds.size()) return "its skin is of no known kind";
+  return std::string("its skin is ") + kStateKinds[found] + ", this one's " +
+         kStateKinds[ours.value];
 }
 
 }  // namespace

@@ -247,6 +247,23 @@ constexpr auto tunables(const SkinPartDef*) {
   return std::tuple{tunable(&SkinPartDef::rigid, "rigid", "Carried by its joints as it is")};
 }
 
+// A skin on triangles around the surface of all solids together, in place of a grid: any figure,
+// with limbs and holes.
+struct SkinSurfaceDef {
+  std::optional<double> edge_m;
+  double blend_m = 0.02;
+  bool operator==(const SkinSurfaceDef&) const = default;
+};
+constexpr auto tunables(const SkinSurfaceDef*) {
+  using S = SkinSurfaceDef;
+  return std::tuple{
+      tunable(&S::edge_m, "edge_m", "m", {1e-5, 100},
+              "How long the triangles' edges are, shorter where the surface is curved; none: a "
+              "fortieth of the figure's size"),
+      tunable(&S::blend_m, "blend_m", "m", {0, 10},
+              "Radius of the fillet between solids that meet; 0: a crease")};
+}
+
 // What only a skin that is a grid has: a tube around the flesh.
 struct SkinGridDef {
   int columns = 32, rows = 32;  // columns go around, rows from bottom to top
@@ -273,10 +290,11 @@ struct SkinMeshDef {
   bool operator==(const SkinMeshDef&) const = default;
 };
 
-// A skin of a character: a mesh if that has a rig, a grid otherwise. Files do not tell the two
-// apart; they have the members of `grid` and `mesh` beside the others.
+// A skin of a character: a mesh if that has a rig, the surface of its solids if that is asked for,
+// a grid otherwise. Files have the members of `grid` and `mesh` beside the others.
 struct SkinDef {
   SkinGridDef grid;
+  std::optional<SkinSurfaceDef> surface;  // given: no grid
   SkinMeshDef mesh;
   SkinMaterialDef material;
   SkinFatDef fat;

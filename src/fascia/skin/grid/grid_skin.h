@@ -2,15 +2,15 @@
 
 #include <memory>
 
-#include <fascia/skin/grid/grid_attachment.h>
 #include <fascia/skin/grid/grid_topology.h>
+#include <fascia/skin/point/flesh_attachment.h>
 
 namespace fascia {
 
 // What only a grid skin has; point p = j * columns + i.
 struct GridSkin {
   std::shared_ptr<const GridTopology> topology;
-  std::shared_ptr<const GridAttachment> attachment;
+  std::shared_ptr<const FleshAttachment> attachment;
 
   const GridLayout& layout() const { return topology->layout(); }
   int columns() const { return layout().columns; }
@@ -20,7 +20,7 @@ struct GridSkin {
   // The inner ends of the strands, in their solids' matter.
   const TissueAnchors& anchors() const { return attachment->anchors(); }
   // The two end rows.
-  const std::vector<GridAttachment::Fixed>& fixed() const { return attachment->fixed(); }
+  const std::vector<FleshAttachment::Fixed>& fixed() const { return attachment->fixed(); }
 };
 
 }  // namespace fascia

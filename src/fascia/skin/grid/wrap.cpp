@@ -7,8 +7,9 @@
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/grid/elastic_grid.h>
-#include <fascia/skin/grid/nearest_solids.h>
+#include <fascia/skin/grid/flesh_path.h>
 #include <fascia/skin/grid/resample.h>
+#include <fascia/skin/point/nearest_solids.h>
 
 namespace fascia {
 namespace {
@@ -103,12 +104,17 @@ void relax(const GridLayout& g, const WrapOptions& options, double cling, int it
   }
 }
 
-void setEnds(const GridLayout& g, const EndRing& bottom, const EndRing& top, const Vec3& upAxis,
-             VectorArray& r) {
+// A tube between two rings, and which way it leads at each of them.
+struct Tube {
+  const EndRing &bottom, &top;
+  Vec3 upAtBottom, upAtTop;
+};
+
+void setEnds(const GridLayout& g, const Tube& tube, VectorArray& r) {
   for (int i = 0; i < g.columns; ++i) {
     const double u = static_cast<double>(i) / g.columns;
-    setPoint(r, g.at(i, 0), ringPoint(bottom, upAxis, u));
-    setPoint(r, g.at(i, g.rows - 1), ringPoint(top, upAxis, u));
+    setPoint(r, g.at(i, 0), ringPoint(tube.bottom, tube.upAtBottom, u));
+    setPoint(r, g.at(i, g.rows - 1), ringPoint(tube.top, tube.upAtTop, u));
   }
   fillPads(g, r);
 }
@@ -134,6 +140,107 @@ VectorArray sphereAround(const DistanceField& field, const GridLayout& g, const 
       setPoint(r, g.at(i, j),
                box.center() + radius * (std::sin(latitude) * around - std::cos(latitude) * upAxis));
     }
+  }
+  return r;
+}
+
+// Where a ray from inside of the flesh has left it by fat_m for the first time, at most reach_m
+// away.
+double wayOut(const DistanceField& field, const Vec3& origin, const Vec3& way, double fat_m,
+              double reach_m) {
+  NearestSolids flesh(field, kReachOfField * reach_m);
+  VectorArray at(NearestSolids::kBlock);
+  constexpr std::size_t kBlock = NearestSolids::kBlock, kSamples = 8 * kBlock;
+  const double step = reach_m / static_cast<double>(kSamples);
+  for (std::size_t first = 0; first < kSamples; first += kBlock) {
+    for (std::size_t i = 0; i < kBlock; ++i)
+      setPoint(at, i, origin + static_cast<double>(first + i) * step * way);
+    flesh.measure(view(static_cast<const VectorArray&>(at), 0, kBlock));
+    for (std::size_t i = 0; i < kBlock; ++i)
+      if (double{flesh.distance_m(i)} >= fat_m) return static_cast<double>(first + i) * step;
+  }
+  return reach_m;
+}
+
+// Rows of a tube around a path: places, and which way is front and which way is along.
+struct PathFrame {
+  Vec3 place, along, front;
+};
+
+// Turned as little as possible from one to the next, and evenly from the front of the one end to
+// that of the other.
+std::vector<PathFrame> framesAlong(const std::vector<Vec3>& path, const Tube& tube) {
+  const auto frontAt = [](const EndRing& ring, const Vec3& along) {
+    return towardsFront(ring.axis.dot(along) < 0 ? Vec3(-ring.axis) : ring.axis);
+  };
+  const auto across = [](const Vec3& way, const Vec3& along) {
+    return Vec3((way - way.dot(along) * along).normalized());
+  };
+  std::vector<PathFrame> frames;
+  Vec3 front = frontAt(tube.bottom, tube.upAtBottom);
+  for (std::size_t j = 0; j < path.size(); ++j) {
+    const Vec3 way = path[std::min(j + 1, path.size() - 1)] - path[j == 0 ? 0 : j - 1];
+    const Vec3 along = way.norm() > 1e-12 ? Vec3(way.normalized()) : tube.upAtBottom;
+    front = across(front, along);
+    frames.push_back({path[j], along, front});
+  }
+  const Vec3 last = across(frontAt(tube.top, tube.upAtTop), frames.back().along);
+  const double twist = std::atan2(frames.back().along.dot(front.cross(last)), front.dot(last));
+  for (std::size_t j = 0; j < frames.size(); ++j) {
+    const double share = static_cast<double>(j) / static_cast<double>(frames.size() - 1);
+    frames[j].front = Eigen::AngleAxisd(share * twist, frames[j].along) * frames[j].front;
+  }
+  return frames;
+}
+
+// Each row around its place on the path, where the flesh around that ends; not so far that it would
+// be nearer to the path somewhere else, where rows of a bend would pass each other.
+VectorArray tubeAlong(const DistanceField& field, const GridLayout& g, const Tube& tube,
+                      const std::vector<Vec3>& path, double fat_m) {
+  constexpr double kOwn = 0.85;  // a place whose path is nearer than this share is another row's
+  const std::vector<PathFrame> frames = framesAlong(path, tube);
+  const double reach_m = 0.5 * boundsOf(field).size().norm();
+  VectorArray r(g.storage());
+  parallelFor(static_cast<std::size_t>(g.rows), [&](std::size_t j) {
+    const PathFrame& f = frames[j];
+    const Vec3 side = f.along.cross(f.front);
+    for (int i = 0; i < g.columns; ++i) {
+      const double a = 2 * kPi * i / g.columns;
+      const Vec3 way = -std::cos(a) * f.front - std::sin(a) * side;
+      double far = std::max(fat_m, wayOut(field, f.place, way, fat_m, reach_m));
+      const auto isOwn = [&](double distance) {
+        const Vec3 p = f.place + distance * way;
+        return std::ranges::none_of(
+            path, [&](const Vec3& other) { return (other - p).norm() < kOwn * distance; });
+      };
+      while (far > fat_m && !isOwn(far)) far *= 0.9;
+      setPoint(r, g.at(i, static_cast<int>(j)), f.place + far * way);
+    }
+  });
+  fillPads(g, r);
+  return r;
+}
+
+// From a start around the flesh at the coarsest level to where it rests on it at the finest.
+template <class Start>
+VectorArray contract(const DistanceField& field, const GridLayout& layout, const Tube& tube,
+                     const WrapOptions& options, int firstIterations, const Start& start) {
+  std::vector<GridLayout> levels{layout};
+  while (levels.back().rows > 2 * kCoarsest && levels.back().columns > 2 * kCoarsest) {
+    GridLayout coarser = levels.back();
+    coarser.rows = (coarser.rows + 1) / 2;
+    coarser.columns = (coarser.columns + 1) / 2;
+    levels.push_back(coarser);
+  }
+  VectorArray r = start(levels.back());
+  for (std::size_t n = levels.size(); n-- > 0;) {
+    const bool coarsest = n + 1 == levels.size();
+    if (!coarsest) r = resample(levels[n + 1], r, levels[n]);
+    setEnds(levels[n], tube, r);
+    // Shrink first, cling then: clinging from afar would pull rows to whatever is nearest.
+    std::vector<WrapBlock> blocks = blocksOf(field, levels[n]);
+    if (coarsest) relax(levels[n], options, 0, firstIterations, blocks, r);
+    relax(levels[n], options, clingRate(levels[n], options), kIterations, blocks, r);
   }
   return r;
 }
@@ -186,25 +293,26 @@ VectorArray shrinkWrap(const DistanceField& field, const GridLayout& layout, con
                        const EndRing& top, const WrapOptions& options) {
   Vec3 upAxis = top.center_m - bottom.center_m;
   upAxis = upAxis.norm() > 1e-9 ? Vec3(upAxis.normalized()) : Vec3(Vec3::UnitY());
+  return contract(
+      field, layout, {bottom, top, upAxis, upAxis}, options, kFirstIterations,
+      [&](const GridLayout& coarsest) { return sphereAround(field, coarsest, upAxis); });
+}
 
-  std::vector<GridLayout> levels{layout};
-  while (levels.back().rows > 2 * kCoarsest && levels.back().columns > 2 * kCoarsest) {
-    GridLayout coarser = levels.back();
-    coarser.rows = (coarser.rows + 1) / 2;
-    coarser.columns = (coarser.columns + 1) / 2;
-    levels.push_back(coarser);
-  }
-  VectorArray r = sphereAround(field, levels.back(), upAxis);
-  for (std::size_t n = levels.size(); n-- > 0;) {
-    const bool coarsest = n + 1 == levels.size();
-    if (!coarsest) r = resample(levels[n + 1], r, levels[n]);
-    setEnds(levels[n], bottom, top, upAxis, r);
-    // Shrink first, cling then: clinging from afar would pull rows to whatever is nearest.
-    std::vector<WrapBlock> blocks = blocksOf(field, levels[n]);
-    if (coarsest) relax(levels[n], options, 0, kFirstIterations, blocks, r);
-    relax(levels[n], options, clingRate(levels[n], options), kIterations, blocks, r);
-  }
-  return r;
+VectorArray wrapAlongFlesh(const DistanceField& field, const GridLayout& layout,
+                           const EndRing& bottom, const EndRing& top, const WrapOptions& options) {
+  const std::vector<Vec3> path =
+      pathThroughFlesh(field, bottom.center_m, top.center_m, static_cast<std::size_t>(layout.rows));
+  const auto towards = [](const Vec3& from, const Vec3& to) {
+    return (to - from).norm() > 1e-9 ? Vec3((to - from).normalized()) : Vec3(Vec3::UnitY());
+  };
+  const Tube tube{bottom, top, towards(path[0], path[1]),
+                  towards(path[path.size() - 2], path.back())};
+  return contract(field, layout, tube, options, kIterations, [&](const GridLayout& coarsest) {
+    return tubeAlong(field, coarsest, tube,
+                     pathThroughFlesh(field, bottom.center_m, top.center_m,
+                                      static_cast<std::size_t>(coarsest.rows)),
+                     options.fat_m);
+  });
 }
 
 }  // namespace fascia

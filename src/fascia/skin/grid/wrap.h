@@ -32,6 +32,13 @@ Vec3 exitPoint(const DistanceField& field, const Vec3& origin, const Vec3& axis,
 VectorArray shrinkWrap(const DistanceField& field, const GridLayout& layout, const EndRing& bottom,
                        const EndRing& top, const WrapOptions& options);
 
+// The same for a figure that the straight tube does not hold: an arc, a snake. Leads a tube along
+// the way through the flesh from one ring to the other (flesh_path.h), just outside of the flesh
+// around it, before it contracts. Columns keep to the front as they do there, turned along the way
+// by no more than the ends ask for.
+VectorArray wrapAlongFlesh(const DistanceField& field, const GridLayout& layout,
+                           const EndRing& bottom, const EndRing& top, const WrapOptions& options);
+
 // Points of a ring, `columns` of them, as the end rows of shrinkWrap.
 Vec3 ringPoint(const EndRing& ring, const Vec3& upAxis, double u);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <fascia/math/points.h>
 #include <fascia/skin/mesh/mesh_kernels.h>
 
 namespace fascia {
@@ -53,6 +54,19 @@ void MeshTopology::surface(const VectorArray& position, TriangleMesh& mesh) cons
     mesh.triangles = drawn_.triangles;
     mesh.uvs = drawn_.uvs;
   }
+  if (drawn_.smooth) smoothNormals(position, mesh);
+}
+
+void MeshTopology::smoothNormals(const VectorArray& position, TriangleMesh& mesh) const {
+  std::vector<Eigen::Vector3f> places(all_.count), normals;
+  for (std::size_t k = 0; k < all_.count; ++k) places[k] = floatPointAt(position, k);
+  std::vector<std::array<std::uint32_t, 3>> triangles = drawn_.triangles;
+  for (auto& t : triangles)
+    for (std::uint32_t& corner : t) corner = drawn_.points[corner];
+  computeNormals(places, triangles, normals);
+  mesh.normals.resize(drawn_.points.size());
+  for (std::size_t v = 0; v < drawn_.points.size(); ++v)
+    mesh.normals[v] = normals[drawn_.points[v]];
 }
 
 }  // namespace fascia

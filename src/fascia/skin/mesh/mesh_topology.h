@@ -17,6 +17,8 @@ class MeshTopology final : public SkinTopology {
     std::vector<std::uint32_t> points;  // storage index of each drawn vertex
     std::vector<Eigen::Vector2f> uvs;
     std::vector<std::array<std::uint32_t, 3>> triangles;  // of drawn vertices
+    // Whether normals are written: smooth across seams. Those of an imported mesh are its artist's.
+    bool smooth = false;
   };
 
   MeshTopology(std::size_t pointCount, TriangleMembrane membrane, Drawn drawn);
@@ -38,6 +40,8 @@ class MeshTopology final : public SkinTopology {
   void surface(const VectorArray& position, TriangleMesh& mesh) const override;
 
  private:
+  void smoothNormals(const VectorArray& position, TriangleMesh& mesh) const;
+
   Range all_;
   TriangleMembrane membrane_;
   Drawn drawn_;

@@ -1,4 +1,4 @@
-#include <fascia/skin/grid/grid_attachment.h>
+#include <fascia/skin/point/flesh_attachment.h>
 
 #include <utility>
 
@@ -7,15 +7,15 @@
 namespace fascia {
 namespace {
 
-class GridPlacer final : public PointPlacer {
+class FleshPlacer final : public PointPlacer {
  public:
-  explicit GridPlacer(const GridAttachment& attachment) : attachment_(attachment) {}
+  explicit FleshPlacer(const FleshAttachment& attachment) : attachment_(attachment) {}
 
   void placeAnchors(const SkinPose& pose, VectorArray& out) override {
     attachment_.anchors().place(*pose.field, scratch_, out);
   }
   void placeFixed(const SkinPose& pose, VectorArray& out) override {
-    for (const GridAttachment::Fixed& f : attachment_.fixed())
+    for (const FleshAttachment::Fixed& f : attachment_.fixed())
       setPoint(out, f.point, pose.joints[f.joint.index()].point(f.position_joint));
   }
   void placeAll(const SkinPose& pose, VectorArray& out) override {
@@ -24,18 +24,18 @@ class GridPlacer final : public PointPlacer {
   }
 
  private:
-  const GridAttachment& attachment_;
+  const FleshAttachment& attachment_;
   VectorArray scratch_;
 };
 
 }  // namespace
 
-GridAttachment::GridAttachment(TissueAnchors anchors, TissueAnchors placements,
-                               std::vector<Fixed> fixed)
+FleshAttachment::FleshAttachment(TissueAnchors anchors, TissueAnchors placements,
+                                 std::vector<Fixed> fixed)
     : anchors_(std::move(anchors)), placements_(std::move(placements)), fixed_(std::move(fixed)) {}
 
-std::unique_ptr<PointPlacer> GridAttachment::makePlacer() const {
-  return std::make_unique<GridPlacer>(*this);
+std::unique_ptr<PointPlacer> FleshAttachment::makePlacer() const {
+  return std::make_unique<FleshPlacer>(*this);
 }
 
 }  // namespace fascia

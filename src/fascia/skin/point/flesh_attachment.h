@@ -7,9 +7,9 @@
 
 namespace fascia {
 
-// A grid hangs on its flesh: every point on a material point of a solid, the two end rows on
-// joints.
-class GridAttachment final : public SkinAttachment {
+// A skin hangs on its flesh: every point on a material point of a solid, but for those that are
+// fixed to joints.
+class FleshAttachment final : public SkinAttachment {
  public:
   // A point that is fixed to a joint.
   struct Fixed {
@@ -19,7 +19,7 @@ class GridAttachment final : public SkinAttachment {
   };
   // `anchors`: the inner ends of the strands; `placements`: the material points that all points of
   // the rest shape go with.
-  GridAttachment(TissueAnchors anchors, TissueAnchors placements, std::vector<Fixed> fixed);
+  FleshAttachment(TissueAnchors anchors, TissueAnchors placements, std::vector<Fixed> fixed);
 
   const TissueAnchors& anchors() const { return anchors_; }
   const TissueAnchors& placements() const { return placements_; }

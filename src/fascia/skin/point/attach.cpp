@@ -1,10 +1,10 @@
-#include <fascia/skin/grid/attach.h>
+#include <fascia/skin/point/attach.h>
 
 #include <algorithm>
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
-#include <fascia/skin/grid/nearest_solids.h>
+#include <fascia/skin/point/nearest_solids.h>
 
 namespace fascia {
 namespace {
@@ -12,32 +12,21 @@ namespace {
 constexpr double kTouch_m = 1e-4;
 constexpr int kSteps = 64;
 
-// Points of one row that lie together.
-struct Piece {
-  std::size_t first, number, count;  // storage index, place in the result
-};
-
-template <class Visit>
-void forEachPiece(const GridLayout& g, const Visit& visit) {
-  const auto columns = static_cast<std::size_t>(g.columns);
-  parallelFor(static_cast<std::size_t>(g.rows), [&](std::size_t j) {
-    for (std::size_t i = 0; i < columns; i += NearestSolids::kBlock)
-      visit(Piece{g.row(static_cast<int>(j)) + i, j * columns + i,
-                  std::min(NearestSolids::kBlock, columns - i)});
-  });
+std::size_t pointsOf(std::span<const PointRun> runs) {
+  return runs.empty() ? 0 : runs.back().number + runs.back().count;
 }
 
 // One point on its way along its normal.
 struct March {
-  std::size_t point;  // of the piece
+  std::size_t point;  // of the run
   Vec3 from_m, inward;
   double reach_m = 0, gone_m = 0;
 
   Vec3 at() const { return from_m + gone_m * inward; }
 };
 
-void attachPiece(const DistanceField& field, ConstVectors points, ConstVectors normals,
-                 double fat_m, Attachment* out) {
+void attachRun(const DistanceField& field, ConstVectors points, ConstVectors normals, double fat_m,
+               Attachment* out) {
   NearestSolids flesh(field, kTouch_m);
   VectorArray at(NearestSolids::kBlock);
   std::vector<March> marching(points.count);
@@ -69,24 +58,27 @@ void attachPiece(const DistanceField& field, ConstVectors points, ConstVectors n
 
 }  // namespace
 
-std::vector<Attachment> attachAlongNormals(const DistanceField& field, const GridLayout& layout,
+std::vector<Attachment> attachAlongNormals(const DistanceField& field,
+                                           std::span<const PointRun> runs,
                                            const VectorArray& points_m, const VectorArray& normals,
                                            double fat_m) {
-  std::vector<Attachment> attachments(layout.pointCount());
-  forEachPiece(layout, [&](const Piece& piece) {
-    attachPiece(field, view(points_m, piece.first, piece.count),
-                view(normals, piece.first, piece.count), fat_m, attachments.data() + piece.number);
+  std::vector<Attachment> attachments(pointsOf(runs));
+  parallelFor(runs.size(), [&](std::size_t n) {
+    const PointRun& run = runs[n];
+    attachRun(field, view(points_m, run.first, run.count), view(normals, run.first, run.count),
+              fat_m, attachments.data() + run.number);
   });
   return attachments;
 }
 
-std::vector<SolidId> nearestSolids(const DistanceField& field, const GridLayout& layout,
+std::vector<SolidId> nearestSolids(const DistanceField& field, std::span<const PointRun> runs,
                                    const VectorArray& points_m) {
-  std::vector<SolidId> nearest(layout.pointCount());
-  forEachPiece(layout, [&](const Piece& piece) {
+  std::vector<SolidId> nearest(pointsOf(runs));
+  parallelFor(runs.size(), [&](std::size_t n) {
+    const PointRun& run = runs[n];
     NearestSolids flesh(field, kTouch_m);
-    flesh.measure(view(points_m, piece.first, piece.count));
-    for (std::size_t i = 0; i < piece.count; ++i) nearest[piece.number + i] = flesh.solid(i);
+    flesh.measure(view(points_m, run.first, run.count));
+    for (std::size_t i = 0; i < run.count; ++i) nearest[run.number + i] = flesh.solid(i);
   });
   return nearest;
 }

@@ -1,4 +1,4 @@
-#include <fascia/skin/grid/nearest_solids.h>
+#include <fascia/skin/point/nearest_solids.h>
 
 #include <algorithm>
 #include <cassert>
