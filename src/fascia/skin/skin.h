@@ -170,7 +170,7 @@ struct SkinStats {
   double step_min_s = 1e300, step_max_s = 0;
   double forces_s = 0, constraints_s = 0, other_s = 0;  // wall clock spent
   double max_penetration_m = 0;       // deepest point at the end of any measured frame
-  double max_face_depth_m = 0;        // deepest cut of a drawn face into a solid, likewise
+  double max_face_depth_m = -1;       // deepest cut of a drawn face into a solid; -1: not measured
   double max_edge_stretch = 0;        // edge length over rest-shape length
   std::uint64_t repaired_points = 0;  // points that had to be put back (never-explodes)
 };

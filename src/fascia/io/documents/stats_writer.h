@@ -9,7 +9,8 @@ namespace fascia {
 
 // How a bake went, as JSON text: vertices, simulated_s, wall_s, realtime_ratio, steps,
 // rejected_steps, step_min_s, step_max_s, share_forces, share_constraints, share_other,
-// max_penetration_m, max_edge_stretch, peak_memory_bytes, state_hash, …
+// max_penetration_m, max_face_depth_m (not of rigs' meshes), max_edge_stretch, peak_memory_bytes,
+// state_hash, …
 std::string statsJson(const Recording& recording);
 void writeStats(const Recording& recording, const std::string& path);
 // Of a scene: frames, simulated_s, wall_s, realtime_ratio, steps, iterations, halved_steps,
