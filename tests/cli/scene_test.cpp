@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <thread>
 
 #include <fascia/io/cache/cache.h>
@@ -17,6 +18,8 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
+
+const std::filesystem::path kSceneExamples = FASCIA_SOURCE_DIR "/examples";
 
 // Two plates, one of them led by a script, beside the ball, which stands.
 constexpr const char* kScene = R"({
@@ -171,6 +174,30 @@ TEST_F(CliScene, ScriptsKnowTheGravityWhichMayBeTwoNumbersInThePlane) {
   write("swing.lua", "local g = gravity()\nlog('gravity', g.x, g.y, g.z)\n");
   EXPECT_THAT(run({"bake", "swing.fascia.json", "-o", "a.pc2"}).out,
               HasSubstr("gravity 0.5 -3.0 0.0"));
+}
+
+// The monster's script, its prey scattered over `reach_m` at up to `speed_m_per_s`.
+std::string monster(double gravity, double reach_m, double speed_m_per_s) {
+  auto scene =
+      nlohmann::json::parse(readWhole(kSceneExamples / "hinge-horned-monster.fascia.json"));
+  scene["simulation"]["gravity_m_per_s2"] = {0, -gravity};
+  scene["simulation"]["frame_rate_hz"] = 30;
+  for (auto& body : scene["bodies"])
+    if (body["name"] == "man")
+      body["scatter"] = {{"position_m", {reach_m, 0}}, {"velocity_m_per_s", {speed_m_per_s, 0}}};
+  return scene.dump();
+}
+
+TEST_F(CliScene, TheMonstersReflexWorksInAnyGravityAndFromFarAway) {
+  write("hinge-horned-monster.lua", readWhole(kSceneExamples / "hinge-horned-monster.lua"));
+  for (const std::string& scene :
+       {monster(0, 0.6, 0.8), monster(24.5, 0.6, 0.8), monster(9.81, 2.4, 3.2)}) {
+    write("monster.fascia.json", scene);
+    for (const char* seed : {"1", "6"}) {
+      const Outcome bake = run({"bake", "monster.fascia.json", "-o", "m.pc2", "--seed", seed});
+      EXPECT_THAT(bake.out, HasSubstr("the script has succeeded")) << scene << " " << seed;
+    }
+  }
 }
 
 // A point of a sphere nailed to two places 0.5 m apart, or twice to the same.
