@@ -9,6 +9,7 @@
 #include <fascia/skin/grid/grid_layout.h>
 #include <fascia/skin/mesh/point_order.h>
 #include <fascia/skin/point/attach.h>
+#include <fascia/skin/point/face_samples.h>
 #include <fascia/skin/point/leapfrog.h>
 #include <fascia/skin/skin_fit.h>
 #include <fascia/skin/surface/surface_mesh.h>
@@ -21,6 +22,9 @@ constexpr double kAddedShare = 0.02;
 // Of the skin's size: how far a joint may be behind the nearest one and still have a share of a
 // point.
 constexpr double kJointReach = 0.08;
+// Of the skin's size: what is left of a triangle's dip into the fat between places that are kept
+// out of the flesh.
+constexpr double kDipTolerance = 1e-3;
 
 VectorArray normalsOf(const std::vector<TriangleMembrane::Corners>& triangles,
                       const VectorArray& points) {
@@ -119,6 +123,7 @@ bool SurfaceSkinBuilder::lay() {
   making_->key = std::move(key);
   const std::vector<std::uint32_t> order = setShape(mesh);
   drape(mesh, order);
+  sampleBetweenPoints();
   attach();
   making_->weights = sharesOfJoints(base_.flesh, base_.posedFlesh, base_.skeleton.jointCount(),
                                     restShape(), order.size(), kJointReach * parts_.shape->size_m);
@@ -156,11 +161,27 @@ void SurfaceSkinBuilder::drape(const TriangleMesh& mesh, const std::vector<std::
     storageOf[order[k]] = static_cast<std::uint32_t>(k);
   for (const auto& t : mesh.triangles)
     making_->triangles.push_back({storageOf[t[0]], storageOf[t[1]], storageOf[t[2]]});
+  // Triangles that lie together come after each other, as points do.
+  const auto first = [](const TriangleMembrane::Corners& t) {
+    return std::min({t[0], t[1], t[2]});
+  };
+  std::stable_sort(making_->triangles.begin(), making_->triangles.end(),
+                   [&](const auto& a, const auto& b) { return first(a) < first(b); });
   Atlas atlas = makeAtlas(mesh);
   for (const std::uint32_t p : atlas.points) making_->drawn.points.push_back(storageOf[p]);
   making_->drawn.uvs = std::move(atlas.uvs);
   making_->drawn.triangles = std::move(atlas.triangles);
   making_->drawn.smooth = true;
+}
+
+// Where triangles dip into the fat between their corners.
+void SurfaceSkinBuilder::sampleBetweenPoints() {
+  auto shape = std::make_shared<SkinShape>(*parts_.shape);
+  FaceSamples faces = sampleFaces(base_.posedFlesh, making_->triangles, shape->rest,
+                                  def_.fat.thickness_m, kDipTolerance * shape->size_m);
+  if (faces.empty()) return;
+  shape->faces = std::make_shared<FaceSamples>(std::move(faces));
+  parts_.shape = std::move(shape);
 }
 
 // Every point by a strand to the flesh below it, and with the matter of its nearest solid.

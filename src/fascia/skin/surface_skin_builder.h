@@ -33,6 +33,7 @@ class SurfaceSkinBuilder {
   SurfaceRestKey restKey() const;
   bool lay();
   std::vector<std::uint32_t> setShape(const TriangleMesh& mesh);
+  void sampleBetweenPoints();
   void attach();
   void drape(const TriangleMesh& mesh, const std::vector<std::uint32_t>& order);
   void setQuantities();
