@@ -52,6 +52,7 @@ class GridSkinBuilder {
   void applyEdits();
   void makeTopology();
   void makeModel();
+  void chooseScheme();
   void makeSelfContact();
   void makeCoarse();
 

@@ -17,31 +17,20 @@ constexpr float kPushMargin = 8;
 // A solid's distance is an estimate whose error grows with the square of the depth: so far out of
 // it a point may be pushed without looking again.
 constexpr float kSure_m = 1e-3f;
-// Gap of a block and a solid that have not been tested yet.
-constexpr float kUnknown = -1e30f;
 // Blocks handed to a thread at once; smaller skins are not worth waking threads for.
 constexpr std::size_t kBlocksPerTask = 128;
-
-bool near(const BlockBox& a, const Box& b, float reach) {
-  for (int k = 0; k < 3; ++k)
-    if (a.low[k] - reach > b.high[k] || a.high[k] + reach < b.low[k]) return false;
-  return true;
-}
 
 // One block of points against the solids of a field.
 struct BlockTest {
   const DistanceField& field;
   const PointBlock& block;
   ContactLanes& lanes;
-  std::span<std::int32_t> nearby;  // scratch for as many as the field has solids
-  std::span<float> gaps = {};      // per solid: no point is nearer than this; updated by visits
+  std::span<std::int32_t> nearby;  // scratch for CulledSolids::padded()
+  float* gaps = nullptr;           // per solid: no point is nearer than this; updated by visits
   std::size_t nearbyCount = 0;
 
-  bool findSolids(const BlockBox& box, std::span<const Box> boxes, float reach) {
-    nearbyCount = 0;
-    for (std::size_t s = 0; s < boxes.size(); ++s)
-      if ((gaps.empty() || gaps[s] <= reach) && near(box, boxes[s], reach))
-        nearby[nearbyCount++] = static_cast<std::int32_t>(s);
+  bool findSolids(const BlockBox& box, const CulledSolids& solids, float reach) {
+    nearbyCount = findNearSolids(box, solids, reach, gaps, nearby.data());
     return nearbyCount > 0;
   }
 
@@ -55,7 +44,7 @@ struct BlockTest {
       field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
                      lanes.normal.view(block.count));
       const float gap = absorbSolid(static_cast<float>(s), move, block.count, lanes);
-      if (!gaps.empty()) gaps[static_cast<std::size_t>(s)] = gap;
+      if (gaps) gaps[s] = gap;
       deepest = std::max(deepest, -gap);
     }
     return deepest;
@@ -110,33 +99,31 @@ struct BlockTest {
   }
 
   // Each point's from its nearest solid: solids that swell take long to say how fast.
-  void readFleshVelocities(const MovingField& moving) {
+  void readFleshVelocities(const MovingField& moving, float reach_m) {
     ContactLanes::Lanes3 place, velocity;
-    std::array<std::size_t, PointBlock::kCapacity> lane;
+    ContactLanes::Lanes<std::int32_t> lane;
     for (const std::int32_t s : nearby.first(nearbyCount)) {
-      std::size_t count = 0;
-      for (std::size_t l = 0; l < block.count; ++l) {
-        if (lanes.nearestSolid[l] != static_cast<float>(s)) continue;
-        place.x[count] = lanes.place.x[l];
-        place.y[count] = lanes.place.y[l];
-        place.z[count] = lanes.place.z[l];
-        lane[count++] = l;
-      }
+      const std::size_t count =
+          packNearest(static_cast<float>(s), reach_m, block.count, lanes, place, lane);
       if (count == 0) continue;
+      if (count == block.count) {
+        moving.velocity(SolidId(s), lanes.place.view(count), lanes.fleshVelocity.view(count));
+        return;
+      }
       moving.velocity(SolidId(s), place.view(count), velocity.view(count));
       for (std::size_t i = 0; i < count; ++i) {
-        lanes.fleshVelocity.x[lane[i]] = velocity.x[i];
-        lanes.fleshVelocity.y[lane[i]] = velocity.y[i];
-        lanes.fleshVelocity.z[lane[i]] = velocity.z[i];
+        const auto l = static_cast<std::size_t>(lane[i]);
+        lanes.fleshVelocity.x[l] = velocity.x[i];
+        lanes.fleshVelocity.y[l] = velocity.y[i];
+        lanes.fleshVelocity.z[l] = velocity.z[i];
       }
     }
   }
 };
 
-void readBoxes(const DistanceField& field, std::vector<Box>& boxes) {
-  boxes.resize(field.solidCount());
-  for (std::size_t s = 0; s < boxes.size(); ++s)
-    boxes[s] = field.bounds(SolidId(static_cast<std::int64_t>(s)));
+void readBoxes(const DistanceField& field, CulledSolids& solids) {
+  for (std::size_t s = 0; s < solids.count(); ++s)
+    solids.setBox(s, field.bounds(SolidId(static_cast<std::int64_t>(s))));
 }
 
 }  // namespace
@@ -150,10 +137,10 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
   FASCIA_ASSERT(velocity.size() == position.size() && points.fat.size() == position.size(),
                 "a number for each point");
   FASCIA_ASSERT(reach_m >= 0, "a search reaches somewhere");
-  readBoxes(field, boxes_);
   followSolids(field);
+  readBoxes(field, solids_);
   last_.resize(position.size());
-  const std::size_t solids = boxes_.size();
+  const std::size_t solids = solids_.padded();
   const std::size_t tasks = (blocks_.size() + kBlocksPerTask - 1) / kBlocksPerTask;
   nearby_.resize(tasks * solids);
   parallelFor(tasks, [&](std::size_t t) {
@@ -164,26 +151,23 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
       BlockMotion motion;
       const BlockBox box =
           loadContactLanes(blocks_[b], position, points.fat, lanes, &last_, &motion);
-      const std::span gaps(gaps_.data() + b * solids, solids);
-      for (std::size_t s = 0; s < solids; ++s) {
-        // Also what is not a number makes a gap unknown.
-        const float nearer = approach(motion, motions_[s]);
-        gaps[s] = nearer < -kUnknown ? gaps[s] - nearer : kUnknown;
-      }
+      float* gaps = gaps_.data() + b * solids;
+      ageGaps(motion, solids_, gaps);
       BlockTest test{field, blocks_[b], lanes, scratch, gaps};
       float searched = reach_m, pushed = 0;
-      bool any = test.findSolids(box, boxes_, searched);
+      bool any = test.findSolids(box, solids_, searched);
       for (int search = 0; any && search < kSearches; ++search) {
         pushed += test.leaveSolids(kPasses, kRetest_m);
         if (kPushMargin * pushed <= searched) break;
         // Pushed so far that solids beyond the search may have come near.
-        std::fill(gaps.begin(), gaps.end(), kUnknown);
+        std::fill_n(gaps, solids, kUnknownGap_m);
         searched = reach_m + 2 * kPushMargin * pushed;
-        any = test.findSolids(box, boxes_, searched);
+        any = test.findSolids(box, solids_, searched);
       }
-      for (float& gap : gaps) gap -= kPushMargin * pushed;
+      if (pushed > 0)
+        for (std::size_t s = 0; s < solids; ++s) gaps[s] -= kPushMargin * pushed;
       results_[b].maxCorrection_m = pushed;
-      if (any) test.readFleshVelocities(field);
+      if (any) test.readFleshVelocities(field, reach_m);
       const std::size_t count = blocks_[b].count;
       const ContactFindings found{lanes.place.view(count), lanes.nearest.data(),
                                   lanes.nearestNormal.view(count), lanes.fleshVelocity.view(count)};
@@ -194,23 +178,13 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
   return largest(results_);
 }
 
-// How much nearer a block and a solid can have come: the difference of their points' ways at the
-// block's centre, and how much the ways differ over the block.
-float FleshContact::approach(const BlockMotion& block, const SolidMotion& solid) {
-  const Eigen::Vector3f center(block.center[0], block.center[1], block.center[2]);
-  const Eigen::Vector3f way(block.way[0], block.way[1], block.way[2]);
-  const Eigen::Vector3f matter = solid.change * (center - solid.origin) + solid.shift;
-  return solid.steepness *
-         ((way - matter).norm() + block.spread_m + solid.turn * block.radius_m + solid.extra_m);
-}
-
 // The motion of each solid since the last call, from its outline.
 void FleshContact::followSolids(const MovingField& field) {
-  const std::size_t solids = boxes_.size();
-  const bool first = motions_.size() != solids;
+  const std::size_t solids = field.solidCount();
+  const bool first = corners_.size() != solids * kCorners;
   if (first) {
-    gaps_.assign(blocks_.size() * solids, kUnknown);
-    motions_.resize(solids);
+    solids_.resize(solids);
+    gaps_.assign(blocks_.size() * solids_.padded(), kUnknownGap_m);
     corners_.resize(solids * kCorners);
   }
   for (std::size_t s = 0; s < solids; ++s) {
@@ -221,15 +195,17 @@ void FleshContact::followSolids(const MovingField& field) {
     for (std::size_t c = 0; c < kCorners; ++c) now[c] = frame.point(outline[c]).cast<float>();
     Eigen::Vector3f* before = corners_.data() + s * kCorners;
     if (first) std::copy(now.begin(), now.end(), before);
-    motions_[s] = motionBetween(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
-    motions_[s].steepness = static_cast<float>(field.lipschitz(id));
+    CulledSolids::Motion motion =
+        motionBetween(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
+    motion.steepness = static_cast<float>(field.lipschitz(id));
+    solids_.setMotion(s, motion);
     std::copy(now.begin(), now.end(), before);
   }
 }
 
-FleshContact::SolidMotion FleshContact::motionBetween(
-    std::span<const Eigen::Vector3f, kCorners> before, const Corners& now) {
-  SolidMotion m;
+CulledSolids::Motion FleshContact::motionBetween(std::span<const Eigen::Vector3f, kCorners> before,
+                                                 const Corners& now) {
+  CulledSolids::Motion m;
   Eigen::Matrix3f edges, edgesNow;
   for (int a = 0; a < 3; ++a) {
     edges.col(a) = before[std::size_t{1} << a] - before[0];
@@ -249,22 +225,23 @@ FleshContact::SolidMotion FleshContact::motionBetween(
   }
   // A box without volume has no map: nothing is known then.
   if (!std::isfinite(m.turn) || !std::isfinite(m.extra_m)) {
-    m = {Eigen::Matrix3f::Zero(), m.origin, m.shift, 0, -kUnknown};
+    m = {Eigen::Matrix3f::Zero(), m.origin, m.shift, 0, -kUnknownGap_m};
   }
   return m;
 }
 
 float FleshContact::deepest(const DistanceField& field, const PointModel& points,
                             const VectorArray& position) const {
-  std::vector<Box> boxes;
-  readBoxes(field, boxes);
-  std::vector<std::int32_t> nearby(boxes.size());
+  CulledSolids solids;
+  solids.resize(field.solidCount());
+  readBoxes(field, solids);
+  std::vector<std::int32_t> nearby(solids.padded());
   ContactLanes lanes{};
   float depth = 0;
   for (const PointBlock& block : blocks_) {
     const BlockBox box = loadContactLanes(block, position, points.fat, lanes);
     BlockTest test{field, block, lanes, nearby};
-    if (test.findSolids(box, boxes, 0)) depth = std::max(depth, test.visit(false));
+    if (test.findSolids(box, solids, 0)) depth = std::max(depth, test.visit(false));
   }
   return depth;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fascia/skin/contact/skin_contact.h>
+#include <fascia/skin/contact/solid_cull_kernels.h>
 #include <fascia/skin/point/point_kernels.h>
 
 namespace fascia {
@@ -30,27 +31,17 @@ class FleshContact final : public SkinContact {
 
   std::vector<PointBlock> blocks_;
   std::vector<Result> results_;
-  std::vector<Box> boxes_;
-  std::vector<std::int32_t> nearby_;  // per task: as many as there are solids
+  CulledSolids solids_;
+  std::vector<std::int32_t> nearby_;  // per task: solids_.padded()
 
   // What is known from the last call; it saves work and changes no result.
-  VectorArray last_;         // positions
-  std::vector<float> gaps_;  // blocks x solids: no point of the block is nearer
-  // A solid's motion since the last call as an affine map: x goes by change (x − origin) + shift.
-  struct SolidMotion {
-    Eigen::Matrix3f change;
-    Eigen::Vector3f origin, shift;
-    float turn;           // norm of change
-    float extra_m;        // what is not rigid: swelling and bending
-    float steepness = 1;  // the field's Lipschitz bound: how much a way can change distances
-  };
-  static float approach(const BlockMotion& block, const SolidMotion& solid);
+  VectorArray last_;  // positions
+  FloatArray gaps_;   // blocks x solids_.padded(): no point of the block is nearer
   void followSolids(const MovingField& field);
   static constexpr std::size_t kCorners = MovingField::kOutline;
   using Corners = std::array<Eigen::Vector3f, kCorners>;
-  static SolidMotion motionBetween(std::span<const Eigen::Vector3f, kCorners> before,
-                                   const Corners& now);
-  std::vector<SolidMotion> motions_;
+  static CulledSolids::Motion motionBetween(std::span<const Eigen::Vector3f, kCorners> before,
+                                            const Corners& now);
   std::vector<Eigen::Vector3f> corners_;  // of each solid's outline
 };
 
