@@ -29,7 +29,7 @@ Examples:
   fascia bench sheet
   fascia bench sheet --points 10000 --threads 2 --steps 4 --runs 5)";
 
-struct SheetOptions {
+struct ClothBenchOptions {
   std::vector<int> points = {1024, 10000, 100000};
   std::vector<int> threads = {1, 2};
   int steps = 0;  // per frame; 0: as skins choose
@@ -41,9 +41,9 @@ struct SheetOptions {
 constexpr double kFirmSkin_N_per_m = 1131, kFirmerSkin_N_per_m = 3200;
 constexpr int kSmallSheet = 2000, kMostLeapfrogPoints = 20000;
 
-class SheetReport {
+class ClothBenchReport {
  public:
-  explicit SheetReport(const Console& console) : console_(console) {
+  explicit ClothBenchReport(const Console& console) : console_(console) {
     console.say(machineLine());
     console.say(
         "                                             × real time    stretch (%)   deepest");
@@ -79,7 +79,7 @@ class SheetReport {
 
 // The fastest of several runs, which are alike but for their time.
 template <class Make>
-SheetResult best(const SheetScene& scene, const SheetOptions& options, const Make& make) {
+SheetResult bestRun(const SheetScene& scene, const ClothBenchOptions& options, const Make& make) {
   SheetResult best;
   for (int run = 0; run < options.runs; ++run) {
     const std::unique_ptr<SheetSolver> solver = make();
@@ -89,17 +89,18 @@ SheetResult best(const SheetScene& scene, const SheetOptions& options, const Mak
   return best;
 }
 
-void addFascia(const SheetScene& scene, const SheetOptions& options, const FasciaSettings& settings,
-               const std::string& engine, int threads, SheetReport& report) {
+void addFascia(const SheetScene& scene, const ClothBenchOptions& options,
+               const FasciaSettings& settings, const std::string& engine, int threads,
+               ClothBenchReport& report) {
   const ThreadLimit limit(threads);
   int steps = 0;
   const SheetResult result =
-      best(scene, options, [&] { return makeFasciaSheet(scene, settings, steps); });
+      bestRun(scene, options, [&] { return makeFasciaSheet(scene, settings, steps); });
   report.add(scene.side * scene.side, engine, fmt::format("{} steps", steps), threads, result);
 }
 
-void runSheet(const SheetOptions& options, const Console& console) {
-  SheetReport report(console);
+void runSheet(const ClothBenchOptions& options, const Console& console) {
+  ClothBenchReport report(console);
   for (const int wanted : options.points) {
     const SheetScene scene{static_cast<int>(std::lround(std::sqrt(wanted)))};
     const int points = scene.side * scene.side;
@@ -118,7 +119,7 @@ void runSheet(const SheetOptions& options, const Console& console) {
     const ThreadLimit oneThread(1);
     const BulletSettings bullet;
     report.add(points, "Bullet", fmt::format("{} x {}", bullet.substeps, bullet.iterations), 1,
-               best(scene, options, [&] { return makeBulletSheet(scene, bullet); }));
+               bestRun(scene, options, [&] { return makeBulletSheet(scene, bullet); }));
 #endif
   }
   report.finish();
@@ -128,7 +129,7 @@ void runSheet(const SheetOptions& options, const Console& console) {
 
 void addSheetBench(CLI::App& group, Console& console) {
   CLI::App& command = *group.add_subcommand("sheet", "Cloth on spheres");
-  const auto options = std::make_shared<SheetOptions>();
+  const auto options = std::make_shared<ClothBenchOptions>();
   command.add_option("--points", options->points, "Points (default: 1024,10000,100000)")
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -18,7 +18,7 @@ constexpr int kSheetWarmFrames = 120;
 constexpr int kSheetMeasureEvery = 6;
 constexpr double kFarAway_m = 10;
 
-double median(std::vector<double> values) {
+double medianOfFrames(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -102,12 +102,12 @@ SheetResult measureSheet(const SheetScene& scene, SheetSolver& solver, int frame
     largest.push_back(*std::max_element(all.begin(), all.end()));
     depth_m.push_back(deepest(scene, solver, (f + 1) * SheetScene::kFrame_s));
   }
-  result.frame_s = median(frame_s);
+  result.frame_s = medianOfFrames(frame_s);
   std::ranges::sort(frame_s);
   result.fastFrame_s = frame_s[frame_s.size() / 10];
-  result.stretch = median(largest);
-  result.stretch99 = median(nearlyLargest);
-  result.penetration_m = median(depth_m);
+  result.stretch = medianOfFrames(largest);
+  result.stretch99 = medianOfFrames(nearlyLargest);
+  result.penetration_m = medianOfFrames(depth_m);
   return result;
 }
 
