@@ -127,7 +127,7 @@ void wrap(benchmark::State& state, const char* name) {
   const EndRing bottom = ring(0, -1), top = ring(g.rows - 1, 1);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        shrinkWrap(scene.state.flesh, g, bottom, top, {def.fat.thickness_m, def.cling}));
+        shrinkWrap(scene.state.flesh, g, bottom, top, {def.fat.thickness_m, def.grid.cling}));
   countPoints(state, scene.skin());
 }
 BENCHMARK_CAPTURE(wrap, spheres, kSpheres)->Unit(benchmark::kMillisecond);

@@ -121,7 +121,7 @@ TEST(Character, DividesLongFrames) {
 TEST(Resolution, CanChangeAtAnyMomentOfARun) {
   CharacterDef def = test::smallCharacter();
   const Character coarse(def);
-  def.skin->columns = 30, def.skin->rows = 41;
+  def.skin->grid.columns = 30, def.skin->grid.rows = 41;
   const Character fine(def);
   CharacterState state = run(coarse, 9, initialState(coarse, coarse.source(0)));
   const Character* from = &coarse;

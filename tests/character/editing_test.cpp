@@ -255,7 +255,7 @@ TEST(Editing, ResamplesTheSkinToAnotherGridWhileItMoves) {
   CharacterState state = initialState(start, start.source(0));
   play(start, 0, 20, state);
   CharacterDef def = start.def();
-  def.skin->columns = 24, def.skin->rows = 31;  // shares every second row and column
+  def.skin->grid.columns = 24, def.skin->grid.rows = 31;  // shares every second row and column
   const Character edited = start.edited(def);
   const CharacterState after = carryOver(start, state, edited);
   const GridLayout &g = start.skin()->grid()->layout(), &h = edited.skin()->grid()->layout();
@@ -310,7 +310,7 @@ TEST(Renaming, ChangesNothingButNames) {
   region.solid = "chest";
   region.edits = {{SkinQuantity::drag}};
   def.skin->brushes = {{SkinQuantity::fat, Vec3::Zero(), "spine", 0.1, 0.01}};
-  def.skin->anchors = {{0.5, 0.5, "chest", Vec3(0, 0, 0.2)}};
+  def.skin->grid.anchors = {{0.5, 0.5, "chest", Vec3(0, 0, 0.2)}};
   const Character start(def);
   renameJoint(def, "spine", "backbone");
   renameJoint(def, "neck", "spine");  // a name that is free again
@@ -349,7 +349,7 @@ TEST(HeldParameters, CountMoreThanDriversAndNeedNoEdit) {
 
 TEST(CharacterState, OfAnotherCharacterIsRefusedAndStays) {
   CharacterDef other = smallCharacter();
-  other.skin->columns = 20;
+  other.skin->grid.columns = 20;
   const Character a(smallCharacter()), b(other);
   CharacterState state = initialState(a, a.source(0));
   play(a, 0, 3, state);

@@ -38,7 +38,7 @@ TEST(IdleSettings, AreNoneOfACharacterAsItComes) {
 TEST(IdleSettings, OfAGridAreThoseOfRigs) {
   CharacterDef def = test::smallCharacter();
   def.skin->fat.bulk_Pa = 100;
-  def.skin->pose.jiggle = 1;
+  def.skin->mesh.pose.jiggle = 1;
   def.skin->regions.emplace_back().name = "all";
   def.skin->regions[0].edits = {{SkinQuantity::fat}, {SkinQuantity::tightness}};
   def.skin->brushes.emplace_back().quantity = SkinQuantity::muscle;
@@ -48,8 +48,8 @@ TEST(IdleSettings, OfAGridAreThoseOfRigs) {
 
 TEST(IdleSettings, OfAPosedMeshAreThoseOfGridsAndOfWhatIsSimulated) {
   CharacterDef def = rigged();
-  def.skin->cling = 1;
-  def.skin->anchors.resize(1);
+  def.skin->grid.cling = 1;
+  def.skin->grid.anchors.resize(1);
   def.skin->contact.self = true;
   def.skin->material.drag_Ns_per_m3 = 1;
   def.skin->tissue.rest_length_m = 0;
@@ -66,7 +66,7 @@ TEST(IdleSettings, OfAPosedMeshAreThoseOfGridsAndOfWhatIsSimulated) {
 
 TEST(IdleSettings, OfASimulatedMeshAreOnlyThoseOfContactWithFlesh) {
   CharacterDef def = rigged();
-  def.skin->pose.simulate = true;
+  def.skin->mesh.pose.simulate = true;
   def.skin->material.drag_Ns_per_m3 = 1;
   def.skin->material.restitution = 1;
   def.skin->fat.bulk_Pa = 100;
@@ -76,7 +76,7 @@ TEST(IdleSettings, OfASimulatedMeshAreOnlyThoseOfContactWithFlesh) {
 
 TEST(IdleSettings, AndKeysThatAreNeverMetAreToldByTheCharacter) {
   CharacterDef def = test::smallCharacter();
-  def.skin->pose.volume = 0;
+  def.skin->mesh.pose.volume = 0;
   def.motions[0].tracks[2].keys[1].value = 3;
   const Character character(def);
   ASSERT_EQ(character.warnings().size(), 2u);

@@ -98,7 +98,7 @@ TEST(NeverExplodes, WhenAFineSkinRidesOnACoarseOne) {
   for (const double frame : {1.0 / 240, 1.0 / 12}) {
     for (const double stiffness : {1500.0, 1e6}) {
       CharacterDef def = material(stiffness, 4);
-      def.skin->columns = 72, def.skin->rows = 80;
+      def.skin->grid.columns = 72, def.skin->grid.rows = 80;
       def.motions = {test::teleport(3 * frame, 2, kPi / 2, 2)};
       const Character character(def);
       ASSERT_NE(character.skin()->coarse(), nullptr);
@@ -111,7 +111,7 @@ TEST(NeverExplodes, WithAnyIntegratorOfTheLibrary) {
   for (const IntegratorInfo& integrator : integrators()) {
     for (const double frame : {1.0 / 60, 1.0 / 12}) {
       CharacterDef def = material(150, 4);
-      def.skin->columns = def.skin->rows = 8;
+      def.skin->grid.columns = def.skin->grid.rows = 8;
       def.motions = {test::teleport(2 * frame, 2, kPi / 2, 2)};
       def.simulation.integrator = integrator.name;
       expectSound(test::simulate(Character(def), 0, frame, 6),
@@ -123,7 +123,7 @@ TEST(NeverExplodes, WithAnyIntegratorOfTheLibrary) {
 // Of weak drag, Euler swings up at any step that is allowed; so does midpoint at longer ones.
 TEST(NeverExplodes, ByRefusingIntegratorsThatCannotBeKeptStable) {
   CharacterDef def = material(1e5, 1);
-  def.skin->columns = def.skin->rows = 8;
+  def.skin->grid.columns = def.skin->grid.rows = 8;
   def.simulation.min_step_s = 1e-4;
   for (const char* name : {"euler", "rk2"}) {
     def.simulation.integrator = name;
@@ -195,9 +195,9 @@ CharacterDef limb(int columns, int rows, double bend) {
     solid.orientation_rad = Vec3(kPi / 2, 0, 0);
   }
   SkinDef& skin = def.skin.emplace();
-  skin.columns = columns, skin.rows = rows;
-  skin.bottom = {"upper", Vec3(0, 0.1, 0), Vec3(0, -1, 0), 0};
-  skin.top = {"elbow", Vec3(0, 0.2, 0), Vec3(0, 1, 0), 0};
+  skin.grid.columns = columns, skin.grid.rows = rows;
+  skin.grid.bottom = {"upper", Vec3(0, 0.1, 0), Vec3(0, -1, 0), 0};
+  skin.grid.top = {"elbow", Vec3(0, 0.2, 0), Vec3(0, 1, 0), 0};
   skin.fat.thickness_m = 0.01;
   skin.contact.self = true;
   def.motions = {{"bend", 2, false, {test::track("elbow", "rx", {{0, 0}, {1, bend}, {2, bend}})}}};

@@ -189,8 +189,8 @@ class RandomEdits {
     return "nothing";
   }
   std::string resolution(CharacterDef& def) {
-    def.skin->columns = 14 + static_cast<int>(below(6));
-    def.skin->rows = 16 + static_cast<int>(below(8));
+    def.skin->grid.columns = 14 + static_cast<int>(below(6));
+    def.skin->grid.rows = 16 + static_cast<int>(below(8));
     return "resolution";
   }
   std::string addOrRemoveSolid(CharacterDef& def) {
@@ -210,10 +210,10 @@ class RandomEdits {
   }
   std::string endOrCling(CharacterDef& def) {
     if (below(2)) {
-      def.skin->cling = random_.uniform();
+      def.skin->grid.cling = random_.uniform();
       return "cling";
     }
-    def.skin->top.radius_m = random_.uniform(0.02, 0.05);
+    def.skin->grid.top.radius_m = random_.uniform(0.02, 0.05);
     return "end ring";
   }
   std::string dial(CharacterDef& def) {
@@ -223,21 +223,21 @@ class RandomEdits {
         {"volume", &SkinPoseDef::volume},
         {"tightness", &SkinPoseDef::tightness}};
     const auto& [name, member] = kDials[below(std::size(kDials))];
-    def.skin->pose.*member = below(4) ? random_.uniform() : 0;
+    def.skin->mesh.pose.*member = below(4) ? random_.uniform() : 0;
     return name;
   }
   std::string partRule(CharacterDef& def) {
-    if (!def.skin->parts.empty()) {
-      def.skin->parts.pop_back();
+    if (!def.skin->mesh.parts.empty()) {
+      def.skin->mesh.parts.pop_back();
       return "drop rule";
     }
     const std::vector<RigPart>& parts = start_.rig->model->parts;
-    def.skin->parts.push_back({parts[below(parts.size())].name, below(2) == 0});
+    def.skin->mesh.parts.push_back({parts[below(parts.size())].name, below(2) == 0});
     return "rule";
   }
   std::string simulate(CharacterDef& def) {
-    def.skin->pose.simulate = !def.skin->pose.simulate;
-    return def.skin->pose.simulate ? "simulate" : "pose";
+    def.skin->mesh.pose.simulate = !def.skin->mesh.pose.simulate;
+    return def.skin->mesh.pose.simulate ? "simulate" : "pose";
   }
   std::string undo(CharacterDef& def) {
     def = start_;

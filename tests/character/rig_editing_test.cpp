@@ -35,8 +35,8 @@ CharacterDef wavingArm() {
   def.flesh = arm.fleshDef;
   def.rig = RigDef{"arm.glb", 1, std::make_shared<const RiggedModel>(arm.rig)};
   def.skin = arm.skinDef;
-  def.skin->pose.simulate = false;
-  def.skin->pose.jiggle = 0.6;
+  def.skin->mesh.pose.simulate = false;
+  def.skin->mesh.pose.jiggle = 0.6;
   MotionDef wave{"wave", 1, true, {}};
   wave.tracks = {test::track("upper", "ty", {{0, 0}, {0.3, 0.2}, {1, 0}}),
                  test::track("fore", "rz", {{0, 0}, {0.5, 1.2}, {1, 0}})};
@@ -93,7 +93,7 @@ TEST(RigEditing, KeepsThePoseFunctionWhereNoDialChanges) {
       editedArm(start, [](CharacterDef& d) { d.skin->tissue.damping_Ns_per_m3 = 9; });
   EXPECT_EQ(tissue.skin()->parts().meshRest, start.skin()->parts().meshRest);
   EXPECT_EQ(tissue.skin()->parts().topology, start.skin()->parts().topology);
-  const Character muscle = editedArm(start, [](CharacterDef& d) { d.skin->pose.muscle = 1; });
+  const Character muscle = editedArm(start, [](CharacterDef& d) { d.skin->mesh.pose.muscle = 1; });
   EXPECT_NE(poseSkinOf(muscle), poseSkinOf(start));
   EXPECT_EQ(&poseSkinOf(muscle)->mesh(), &poseSkinOf(start)->mesh());
   EXPECT_EQ(&poseSkinOf(muscle)->jiggle(), &poseSkinOf(start)->jiggle());
@@ -117,7 +117,8 @@ TEST(RigEditing, LetsTheFleshSwingOnWhereItIs) {
   advance(start, start.source(0), kRigFrame_s, b, stats);
   EXPECT_EQ(hashOf(tissue, a), hashOf(start, b));
   // Another dial: the same places go on with their offsets.
-  const Character livelier = editedArm(start, [](CharacterDef& d) { d.skin->pose.jiggle = 0.8; });
+  const Character livelier =
+      editedArm(start, [](CharacterDef& d) { d.skin->mesh.pose.jiggle = 0.8; });
   const CharacterState c = carryOver(start, state, livelier);
   EXPECT_EQ(c.skin.jiggle.offset, state.skin.jiggle.offset);
   EXPECT_EQ(c.skin.jiggle.velocity, state.skin.jiggle.velocity);
@@ -125,20 +126,21 @@ TEST(RigEditing, LetsTheFleshSwingOnWhereItIs) {
 
 TEST(RigEditing, GoesOnFromWhereItIsWhenPointsAreFixedOrTheMembraneComes) {
   CharacterDef def = wavingArm();
-  def.skin->pose.simulate = true;
+  def.skin->mesh.pose.simulate = true;
   const Character start(def);
   CharacterState state = initialState(start, start.source(0));
   SkinStats stats;
   for (int f = 0; f < 12; ++f) advance(start, start.source(0), kRigFrame_s, state, stats);
   // The bead is simulated, too: other points come first in memory.
   const Character bead = editedArm(start, [](CharacterDef& d) {
-    d.skin->parts = {{"bead", false}};
+    d.skin->mesh.parts = {{"bead", false}};
   });
   ASSERT_NE(bead.skin()->parts().meshRest->order, start.skin()->parts().meshRest->order);
   const CharacterState after = carryOver(start, state, bead);
   EXPECT_EQ(farthestPoint(start, state, bead, after), 0);
   EXPECT_TRUE(after.skin.ready);
-  const Character posed = editedArm(bead, [](CharacterDef& d) { d.skin->pose.simulate = false; });
+  const Character posed =
+      editedArm(bead, [](CharacterDef& d) { d.skin->mesh.pose.simulate = false; });
   CharacterState still = carryOver(bead, after, posed);
   EXPECT_EQ(farthestPoint(start, state, posed, still), 0);
   advance(posed, posed.source(0), kRigFrame_s, still, stats);

@@ -43,10 +43,10 @@ inline CharacterDef smallCharacter() {
                       ball("head", "neck", 0.15, 0.15)};
   def.flesh.solids[2].drivers = {{"radius_m", "neck", Dof::rx, {{0, 0.15}, {quarter, 0.18}}}};
   def.skin.emplace();
-  def.skin->columns = 12;
-  def.skin->rows = 16;
-  def.skin->bottom.joint = "hip";
-  def.skin->top.joint = "neck";
+  def.skin->grid.columns = 12;
+  def.skin->grid.rows = 16;
+  def.skin->grid.bottom.joint = "hip";
+  def.skin->grid.top.joint = "neck";
   def.simulation.settle_s = 0.1;
 
   MotionDef sway{"sway", 2, true, {}};
@@ -61,7 +61,7 @@ inline CharacterDef smallCharacter() {
 // Fine and stiff enough to ride on a coarse copy of itself.
 inline CharacterDef fineCharacter(int side) {
   CharacterDef def = smallCharacter();
-  def.skin->columns = def.skin->rows = side;
+  def.skin->grid.columns = def.skin->grid.rows = side;
   def.skin->material.stretch_u_N_per_m = def.skin->material.stretch_v_N_per_m = 1500;
   def.skin->material.shear_N_per_m = 600;
   return def;
@@ -121,7 +121,8 @@ inline double longestEdge(const Skin& skin, const SkinState& state) {
 // What the frames of a run showed at their worst.
 struct Worst {
   bool finite = true;
-  double penetration_m = 0, stretch = 0, longestEdge = 0;
+  double penetration_m = 0, longestEdge = 0;
+  double stretch = 0;      // of what is simulated; stats have that of what is shown
   double lastStretch = 0;  // of the last frame
   SkinStats stats;
 
@@ -146,9 +147,9 @@ inline Worst simulate(const Character& character, int motion, double frame_s, in
                 worst.stats);
     worst.longestEdge = std::max(worst.longestEdge, longestEdge(*character.skin(), state.skin));
     worst.lastStretch = character.skin()->grid()->elastic().maxStretch(state.skin.position);
+    worst.stretch = std::max(worst.stretch, worst.lastStretch);
   }
   worst.penetration_m = worst.stats.max_penetration_m;
-  worst.stretch = worst.stats.max_edge_stretch;
   return worst;
 }
 

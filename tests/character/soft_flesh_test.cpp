@@ -138,7 +138,7 @@ CharacterDef skinnedJelly(const BodyBasisDef& basis) {
   SoftSolidDef& soft = def.flesh.solids[0].soft.emplace();
   soft.basis = basis;
   soft.rigidity_Pa = 3e3, soft.volume_Pa = 3e4;
-  def.skin->columns = 16, def.skin->rows = 24;
+  def.skin->grid.columns = 16, def.skin->grid.rows = 24;
   return def;
 }
 

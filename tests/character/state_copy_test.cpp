@@ -95,7 +95,7 @@ TEST(StateCopies, OfRigsGoOnLikeTheOriginal) {
   for (const bool simulate : {false, true}) {
     for (const bool soft : {false, true}) {
       CharacterDef def = test::fleshOut(file->string());
-      def.skin->pose.simulate = simulate;
+      def.skin->mesh.pose.simulate = simulate;
       if (soft) def.flesh.solids.front().soft.emplace();
       expectCopiesToGoOn(Character(def), random, soft ? "soft fox" : "fox");
     }

@@ -140,7 +140,7 @@ TEST(StateFile, IsRefusedByAnotherCharacter) {
   const Character character(richCharacter());
   const std::string bytes = saveState(character, runFor(character, 2));
   CharacterDef def = richCharacter();
-  def.skin->columns = 16;
+  def.skin->grid.columns = 16;
   expectRefused(Character(def), bytes, "it has 12 skin points around, this one 16");
   def = richCharacter();
   def.flesh.solids.push_back(test::ball("hat", "neck", 0.3, 0.1));

@@ -90,7 +90,8 @@ TEST_F(Cli, StatsHoldWhatIsPromised) {
   for (const char* key :
        {"vertices", "simulated_s", "wall_s", "realtime_ratio", "steps", "rejected_steps",
         "step_min_s", "step_max_s", "share_forces", "share_constraints", "share_other",
-        "max_penetration_m", "max_edge_stretch", "peak_memory_bytes", "state_hash"})
+        "max_penetration_m", "max_face_depth_m", "max_edge_stretch", "peak_memory_bytes",
+        "state_hash"})
     EXPECT_TRUE(stats.contains(key)) << key;
   EXPECT_GT(stats.at("steps"), 0);
   EXPECT_DOUBLE_EQ(stats.at("simulated_s"), 0.5);

@@ -46,9 +46,9 @@ TEST(CharacterFile, RigTakesThePlaceOfTheGrid) {
   EXPECT_EQ(def.skin->material.drag_Ns_per_m3, 2);
   EXPECT_EQ(def.skin->fat.bulk_Pa, 900);
   EXPECT_TRUE(def.skin->contact.self);
-  ASSERT_EQ(def.skin->parts.size(), 2u);
-  EXPECT_TRUE(def.skin->parts[0].rigid);
-  EXPECT_FALSE(def.skin->parts[1].rigid);
+  ASSERT_EQ(def.skin->mesh.parts.size(), 2u);
+  EXPECT_TRUE(def.skin->mesh.parts[0].rigid);
+  EXPECT_FALSE(def.skin->mesh.parts[1].rigid);
   EXPECT_EQ(characterText(def), sample::kRigged);
 }
 

@@ -86,18 +86,18 @@ Def& objectIn(CharacterDef& def) {
   if constexpr (std::is_same_v<Def, FleshSolidDef>) return def.flesh.solids[0];
   if constexpr (std::is_same_v<Def, SoftSolidDef>) return *def.flesh.solids[0].soft;
   if constexpr (std::is_same_v<Def, RigDef>) return *def.rig;
-  if constexpr (std::is_same_v<Def, SkinDef>) return *def.skin;
-  if constexpr (std::is_same_v<Def, SkinEndDef>) return def.skin->bottom;
+  if constexpr (std::is_same_v<Def, SkinGridDef>) return def.skin->grid;
+  if constexpr (std::is_same_v<Def, SkinEndDef>) return def.skin->grid.bottom;
   if constexpr (std::is_same_v<Def, SkinMaterialDef>) return def.skin->material;
   if constexpr (std::is_same_v<Def, SkinFatDef>) return def.skin->fat;
   if constexpr (std::is_same_v<Def, SkinTissueDef>) return def.skin->tissue;
-  if constexpr (std::is_same_v<Def, SkinPoseDef>) return def.skin->pose;
+  if constexpr (std::is_same_v<Def, SkinPoseDef>) return def.skin->mesh.pose;
   if constexpr (std::is_same_v<Def, SkinRegionDef>) return def.skin->regions[0];
   if constexpr (std::is_same_v<Def, SkinRegionDef::Edit>) return def.skin->regions[0].edits[0];
   if constexpr (std::is_same_v<Def, SkinBrushDef>) return def.skin->brushes[0];
-  if constexpr (std::is_same_v<Def, SkinAnchorDef>) return def.skin->anchors[0];
+  if constexpr (std::is_same_v<Def, SkinAnchorDef>) return def.skin->grid.anchors[0];
   if constexpr (std::is_same_v<Def, SkinContactDef>) return def.skin->contact;
-  if constexpr (std::is_same_v<Def, SkinPartDef>) return def.skin->parts[0];
+  if constexpr (std::is_same_v<Def, SkinPartDef>) return def.skin->mesh.parts[0];
   if constexpr (std::is_same_v<Def, MotionDef>) return def.motions[0];
   if constexpr (std::is_same_v<Def, Key>) return def.motions[0].tracks[0].keys[0];
   if constexpr (std::is_same_v<Def, SimulationDef>) return def.simulation;
@@ -119,7 +119,7 @@ Def& objectIn(SceneDef& def) {
 CharacterDef characterOf(const json& document) {
   CharacterDef def = readCharacterText(document.dump()).def;
   def.rig.emplace();  // without a mesh it changes nothing but what is checked
-  def.skin->parts.emplace_back();
+  def.skin->mesh.parts.emplace_back();
   return def;
 }
 

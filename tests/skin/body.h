@@ -40,10 +40,10 @@ struct Body {
     fleshDef.solids = {ball("belly", "hip", Vec3::Zero(), 0.3),
                        ball("chest", "hip", Vec3(0, 0.35, 0.03), 0.2),
                        ball("head", "neck", Vec3(0, 0.15, 0), 0.15)};
-    skinDef.bottom.joint = "hip";
-    skinDef.top.joint = "neck";
-    skinDef.columns = 16;
-    skinDef.rows = 24;
+    skinDef.grid.bottom.joint = "hip";
+    skinDef.grid.top.joint = "neck";
+    skinDef.grid.columns = 16;
+    skinDef.grid.rows = 24;
   }
 
   // Returns whether the skin was built without faults.

@@ -67,7 +67,7 @@ struct MeshArm {
     skinDef.material.shear_N_per_m = 1;
     skinDef.material.prestretch = 1;
     skinDef.fat.thickness_m = 0.05;
-    skinDef.pose.simulate = true;
+    skinDef.mesh.pose.simulate = true;
   }
   std::uint32_t addPoint(const Vec3& p, const PointWeights& w, std::uint32_t component) {
     rig.points_m.push_back(p.cast<float>());

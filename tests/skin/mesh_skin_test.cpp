@@ -160,19 +160,19 @@ TEST(MeshSkin, CarriesBordersExactly) {
 TEST(MeshSkin, MakesPartsRigidOrElasticAsTheFileSays) {
   MeshArm arm;
   const std::size_t all = arm.rig.points_m.size();
-  arm.skinDef.parts = {{"bead", false}};
+  arm.skinDef.mesh.parts = {{"bead", false}};
   EXPECT_EQ(fixedCount(arm), 0u);
-  arm.skinDef.parts = {{"arm", true}};
+  arm.skinDef.mesh.parts = {{"arm", true}};
   EXPECT_EQ(fixedCount(arm), all);
-  arm.skinDef.parts = {{"glass", false}};  // the bead's material
+  arm.skinDef.mesh.parts = {{"glass", false}};  // the bead's material
   EXPECT_EQ(fixedCount(arm), 0u);
-  arm.skinDef.parts = {{"arm", true}, {"arm", false}};  // later rules win
+  arm.skinDef.mesh.parts = {{"arm", true}, {"arm", false}};  // later rules win
   EXPECT_EQ(fixedCount(arm), 6u);
 }
 
 TEST(MeshSkin, MovesEveryPointByItsJointsIfAllAreRigid) {
   MeshArm arm;
-  arm.skinDef.parts = {{"arm", true}};
+  arm.skinDef.mesh.parts = {{"arm", true}};
   ASSERT_TRUE(arm.build());
   ArmRun run(arm, bend(arm));
   run.advance(10);
@@ -232,15 +232,15 @@ TEST(MeshSkin, JumpsWithABodyThatIsTeleported) {
 
 MeshArm posedArm() {
   MeshArm arm;
-  arm.skinDef.pose.simulate = false;
+  arm.skinDef.mesh.pose.simulate = false;
   EXPECT_TRUE(arm.build());
   return arm;
 }
 
 TEST(PosedSkin, IsWhereItsPoseFunctionHasItAndNothingElse) {
   MeshArm arm;
-  arm.skinDef.pose.simulate = false;
-  arm.skinDef.pose.jiggle = 0;
+  arm.skinDef.mesh.pose.simulate = false;
+  arm.skinDef.mesh.pose.jiggle = 0;
   ASSERT_TRUE(arm.build());
   ASSERT_FALSE(arm.skin->isSimulated());
   ArmRun run(arm, bend(arm));
@@ -255,8 +255,8 @@ TEST(PosedSkin, IsWhereItsPoseFunctionHasItAndNothingElse) {
 TEST(PosedSkin, SwingsBehindAShakeByItsDial) {
   const auto swing = [&](double dial) {
     MeshArm arm;
-    arm.skinDef.pose.simulate = false;
-    arm.skinDef.pose.jiggle = dial;
+    arm.skinDef.mesh.pose.simulate = false;
+    arm.skinDef.mesh.pose.jiggle = dial;
     EXPECT_TRUE(arm.build());
     ArmRun run(arm, shake(arm));
     VectorArray placed = run.state.position;
@@ -290,7 +290,7 @@ TEST(PosedSkin, StartsItsJiggleAnewAfterAJump) {
 
 TEST(PosedSkin, DialsDifferByRegionJointAndPoint) {
   const auto jiggleOf = [](MeshArm& arm) {
-    arm.skinDef.pose.simulate = false;
+    arm.skinDef.mesh.pose.simulate = false;
     EXPECT_TRUE(arm.build());
     return arm.skin->rigged()->skin->jiggle().nodeCount();
   };
@@ -304,7 +304,7 @@ TEST(PosedSkin, DialsDifferByRegionJointAndPoint) {
   const std::size_t half = jiggleOf(upper);
   EXPECT_GT(half, 0u);
   EXPECT_LT(half, everywhere);
-  none.skinDef.pose.jiggle = 0;
+  none.skinDef.mesh.pose.jiggle = 0;
   EXPECT_EQ(jiggleOf(none), 0u);
   painted.skinDef.points.emplace().jiggle.edit().assign(painted.rig.points_m.size(), 0.f);
   EXPECT_EQ(jiggleOf(painted), 0u);
@@ -331,7 +331,7 @@ void expectError(MeshArm& arm, const std::string& pointer, const std::string& wh
 
 TEST(MeshSkinFaults, NameAPartThatTheMeshLacks) {
   MeshArm arm;
-  arm.skinDef.parts = {{"bead", true}, {"toe", true}};
+  arm.skinDef.mesh.parts = {{"bead", true}, {"toe", true}};
   expectError(arm, "/skin/parts/1/name", "'toe'");
 }
 

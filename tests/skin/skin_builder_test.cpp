@@ -16,7 +16,7 @@ TEST(SkinBuilder, SpreadsMassAndStiffnessPerAreaAtEveryResolution) {
   double mass[2];
   for (int n = 0; n < 2; ++n) {
     Body body;
-    body.skinDef.columns = 24 << n, body.skinDef.rows = 32 << n;
+    body.skinDef.grid.columns = 24 << n, body.skinDef.grid.rows = 32 << n;
     ASSERT_TRUE(body.build());
     mass[n] = 0;
     for (const float m : body.skin->points().mass) mass[n] += m;
@@ -84,7 +84,7 @@ TEST(SkinRegion, SetsScalesAndAddsInsideAndFadesOverItsFeather) {
   SkinRegionDef region{"belt", {}, {}, {}, {}, "", "", 0.1, {{fat, Mode::set, 0.05}}};
   region.u_min = 0, region.u_max = 1, region.v_min = 0.3, region.v_max = 0.6;
   body.skinDef.regions = {region};
-  body.skinDef.rows = 41;
+  body.skinDef.grid.rows = 41;
   ASSERT_TRUE(body.build());
   for (const int i : {0, 7, 15}) {
     EXPECT_FLOAT_EQ(valueAt(body, fat, i, 18), 0.05f);
@@ -161,7 +161,7 @@ TEST(SkinBrush, NeverMakesFatNegative) {
 
 TEST(SkinAnchor, TiesThePointNearestToItsCoordinatesToASolid) {
   Body body;
-  body.skinDef.anchors = {{0.5, 0.5, "head", Vec3(0, 0, 3)}};
+  body.skinDef.grid.anchors = {{0.5, 0.5, "head", Vec3(0, 0, 3)}};
   ASSERT_TRUE(body.build());
   const std::size_t k = body.skin->grid()->layout().at(8, 12);  // round(0.5 · 23) = 12
   int found = 0;
@@ -185,7 +185,7 @@ TEST(SkinPoints, ReplaceDefaultsPointByPointAndAreResampledToOtherGrids) {
   ASSERT_TRUE(body.build());
   EXPECT_FLOAT_EQ(valueAt(body, SkinQuantity::fat, 5, 17), 0.027f);
   EXPECT_FLOAT_EQ(valueAt(body, SkinQuantity::density, 5, 17), 4);
-  body.skinDef.rows = 47;
+  body.skinDef.grid.rows = 47;
   ASSERT_TRUE(body.build());
   EXPECT_NEAR(valueAt(body, SkinQuantity::fat, 5, 33), 0.01 + 0.001 * 16.5, 1e-6);
 }

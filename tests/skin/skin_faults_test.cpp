@@ -35,11 +35,11 @@ struct Fault {
 std::vector<Fault> faults() {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   return {
-      {"/skin/grid/0", [](SkinDef& d) { d.columns = 7; }},
-      {"/skin/grid/0", [](SkinDef& d) { d.columns = -5; }},
-      {"/skin/grid/1", [](SkinDef& d) { d.rows = 5000; }},
-      {"/skin/bottom/joint", [](SkinDef& d) { d.bottom.joint = "hippo"; }},
-      {"/skin/top/joint", [](SkinDef& d) { d.top.joint = ""; }},
+      {"/skin/grid/0", [](SkinDef& d) { d.grid.columns = 7; }},
+      {"/skin/grid/0", [](SkinDef& d) { d.grid.columns = -5; }},
+      {"/skin/grid/1", [](SkinDef& d) { d.grid.rows = 5000; }},
+      {"/skin/bottom/joint", [](SkinDef& d) { d.grid.bottom.joint = "hippo"; }},
+      {"/skin/top/joint", [](SkinDef& d) { d.grid.top.joint = ""; }},
       {"/skin/material/density_kg_per_m2", [](SkinDef& d) { d.material.density_kg_per_m2 = 0; }},
       {"/skin/material/stretch_u_N_per_m",
        [nan](SkinDef& d) { d.material.stretch_u_N_per_m = nan; }},
@@ -55,7 +55,7 @@ std::vector<Fault> faults() {
       {"/skin/tissue/stiffness_N_per_m3", [](SkinDef& d) { d.tissue.stiffness_N_per_m3 = -1; }},
       {"/skin/tissue/damping_Ns_per_m3", [](SkinDef& d) { d.tissue.damping_Ns_per_m3 = 1e9; }},
       {"/skin/tissue/rest_length_m", [](SkinDef& d) { d.tissue.rest_length_m = -1; }},
-      {"/skin/cling", [](SkinDef& d) { d.cling = 2; }},
+      {"/skin/cling", [](SkinDef& d) { d.grid.cling = 2; }},
       {"/skin/regions/0/solid",
        [](SkinDef& d) {
          d.regions.resize(1);
@@ -73,7 +73,7 @@ std::vector<Fault> faults() {
        }},
       {"/skin/anchors/0/solid",
        [](SkinDef& d) {
-         d.anchors = {{0.5, 0.5, "tail", Vec3::Zero()}};
+         d.grid.anchors = {{0.5, 0.5, "tail", Vec3::Zero()}};
        }},
       {"/skin/points/columns", [](SkinDef& d) { d.points = savedGrid(3, 8); }},
       {"/skin/points/fat_m",
@@ -116,7 +116,7 @@ TEST(SkinFaults, AreNamedByTheirPointer) {
 TEST(SkinFaults, AreReportedAllAtOnce) {
   Body body;
   body.skinDef.material.density_kg_per_m2 = -3;
-  body.skinDef.cling = 7;
+  body.skinDef.grid.cling = 7;
   body.skinDef.fat.thickness_m = 3;
   EXPECT_THAT(pointers(body),
               testing::UnorderedElementsAre("/skin/material/density_kg_per_m2", "/skin/cling",
@@ -125,7 +125,7 @@ TEST(SkinFaults, AreReportedAllAtOnce) {
 
 TEST(SkinFaults, SuggestTheNameThatWasMeant) {
   Body body;
-  body.skinDef.top.joint = "nek";
+  body.skinDef.grid.top.joint = "nek";
   body.build();
   ASSERT_EQ(body.diagnostics.errors().size(), 1u);
   EXPECT_THAT(body.diagnostics.errors()[0].hint, testing::HasSubstr("neck"));

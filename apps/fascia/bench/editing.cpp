@@ -33,6 +33,7 @@ Examples:
 struct EditingOptions {
   std::string file;
   std::vector<int> points{1024, 10000};
+  std::vector<std::string> only;  // names of edits; empty: all
   int repeats = 41;
 };
 
@@ -85,16 +86,17 @@ std::vector<Edit> gridEdits() {
        [](CharacterDef& d, int n) {
          renameJoint(d, d.skeleton.joints.back().name, "joint " + std::to_string(n));
        }},
-      {"wrapped anew", [](CharacterDef& d, int n) { d.skin->cling = 0.12 + 0.01 * wave(n); }},
+      {"wrapped anew", [](CharacterDef& d, int n) { d.skin->grid.cling = 0.12 + 0.01 * wave(n); }},
   };
 }
 
 std::vector<Edit> rigEdits() {
   return {
-      {"jiggle", [](CharacterDef& d, int n) { d.skin->pose.jiggle = 0.5 + 0.1 * wave(n); }},
-      {"muscle", [](CharacterDef& d, int n) { d.skin->pose.muscle = 0.5 + 0.1 * wave(n); }},
-      {"volume", [](CharacterDef& d, int n) { d.skin->pose.volume = 0.5 + 0.1 * wave(n); }},
-      {"tightness", [](CharacterDef& d, int n) { d.skin->pose.tightness = 0.5 + 0.1 * wave(n); }},
+      {"jiggle", [](CharacterDef& d, int n) { d.skin->mesh.pose.jiggle = 0.5 + 0.1 * wave(n); }},
+      {"muscle", [](CharacterDef& d, int n) { d.skin->mesh.pose.muscle = 0.5 + 0.1 * wave(n); }},
+      {"volume", [](CharacterDef& d, int n) { d.skin->mesh.pose.volume = 0.5 + 0.1 * wave(n); }},
+      {"tightness",
+       [](CharacterDef& d, int n) { d.skin->mesh.pose.tightness = 0.5 + 0.1 * wave(n); }},
       {"brush of fat",
        [](CharacterDef& d, int n) {
          d.skin->brushes = {{SkinQuantity::fat, Vec3::Zero(), d.skeleton.joints.back().name, 0.05,
@@ -154,14 +156,17 @@ Character loadWithPoints(const std::string& file, int points) {
   return character;
 }
 
-Json measureAll(const Character& character, int repeats, const Console& console) {
+Json measureAll(const Character& character, const EditingOptions& options,
+                const Console& console) {
   const std::string name = character.def().name;
   Json::List rows;
   std::vector<Edit> all = edits();
   for (Edit& more : character.skin()->grid() ? gridEdits() : rigEdits())
     all.push_back(std::move(more));
   for (const Edit& edit : all) {
-    const Times t = measure(character, edit, repeats);
+    if (!options.only.empty() && std::ranges::find(options.only, edit.name) == options.only.end())
+      continue;
+    const Times t = measure(character, edit, options.repeats);
     console.say(fmt::format(
         "{} {:>6}  {:<14} {:7.2f} ms to edit, {:6.2f} ms to go on; first frame {:7.2f} ms, usual "
         "{:7.2f} ms",
@@ -185,7 +190,7 @@ void runEditing(const EditingOptions& options, const Console& console) {
   Json::List results;
   for (const int points : options.points) {
     const Character character = loadWithPoints(file, points);
-    results.push_back(measureAll(character, options.repeats, console));
+    results.push_back(measureAll(character, options, console));
     if (!character.skin()->grid()) break;  // a mesh has the points that it has
   }
   console.answer(
@@ -201,6 +206,8 @@ void addEditingBench(CLI::App& group, Console& console) {
   command.add_option("--points", options->points, "Skin points (default: 1024 10000)")
       ->type_name("N")
       ->check(numberIn(64, 1e6));
+  command.add_option("--edit", options->only, "Only these, as the table names them")
+      ->type_name("NAME");
   command.add_option("--repeats", options->repeats, "Edits of each kind (default: 41)")
       ->type_name("N")
       ->check(numberIn(1, 1e4));

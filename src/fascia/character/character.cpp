@@ -17,9 +17,9 @@ std::shared_ptr<const CharacterDef> withOptions(const CharacterDef& def,
   auto out = std::make_shared<CharacterDef>(def);
   if (!options.integrator.empty()) out->simulation.integrator = options.integrator;
   if (options.step_s >= 0) out->simulation.step_s = options.step_s;
-  if (out->skin && options.columns > 0) out->skin->columns = options.columns;
-  if (out->skin && options.rows > 0) out->skin->rows = options.rows;
-  if (out->skin && options.jiggle >= 0) out->skin->pose.jiggle = options.jiggle;
+  if (out->skin && options.columns > 0) out->skin->grid.columns = options.columns;
+  if (out->skin && options.rows > 0) out->skin->grid.rows = options.rows;
+  if (out->skin && options.jiggle >= 0) out->skin->mesh.pose.jiggle = options.jiggle;
   return out;
 }
 

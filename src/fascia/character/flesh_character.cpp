@@ -12,7 +12,7 @@ namespace {
 SkinDef skinFor(const RiggedModel& model, const SkinPoseDef& dials) {
   const double size = model.size_m();
   SkinDef skin;
-  skin.pose = dials;
+  skin.mesh.pose = dials;
   skin.fat.thickness_m = std::clamp(0.1 * size, 1e-6, 1.0);
   if (!dials.simulate) return skin;
   skin.tissue.stiffness_N_per_m3 = 20000;

@@ -29,7 +29,7 @@ class Idle {
       : def_(def),
         diagnostics_(diagnostics),
         onRig_(def.rig.has_value()),
-        simulated_(def.skin && (!onRig_ || def.skin->pose.simulate)) {}
+        simulated_(def.skin && (!onRig_ || def.skin->mesh.pose.simulate)) {}
 
   void warn() const {
     if (def_.skin) warnOfSkin(*def_.skin);
@@ -52,14 +52,14 @@ class Idle {
       warnOfMesh(skin);
     } else {
       rows(skin.fat, "/skin/fat", {"bulk_Pa"}, kGridFat);
-      rows(skin.pose, "/skin/pose", {}, kGridPose);
+      rows(skin.mesh.pose, "/skin/pose", {}, kGridPose);
     }
     warnOfQuantities(skin);
   }
 
   void warnOfMesh(const SkinDef& skin) const {
-    rows(skin, "/skin", {"cling"}, kMeshWrap);
-    if (!skin.anchors.empty()) one("/skin/anchors", kMeshAnchors);
+    rows(skin.grid, "/skin", {"cling"}, kMeshWrap);
+    if (!skin.grid.anchors.empty()) one("/skin/anchors", kMeshAnchors);
     rows(skin.contact, "/skin/contact", {}, kMeshContact);
     if (simulated_) {
       rows(skin.material, "/skin/material", {"friction_per_s", "restitution"}, kMeshFriction);

@@ -23,9 +23,10 @@ void keepFrame(const Character& character, const CharacterState& state, bool kep
   FASCIA_ASSERT(state.posture.values.size() == character.skeleton().valueCount(),
                 "the state is of this character");
   if (character.skin()) {
-    skinSurface(*character.skin(), state.skin, out.skin);
+    skinSurface(*character.skin(), state.flesh, state.skin, out.skin);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
                 out.stats);
+    measureFaces(state.flesh, out.skin, out.stats);
   }
   if (!kept) return;
   out.frames.push_back(

@@ -52,7 +52,7 @@ void renameJoint(CharacterDef& def, const std::string& from, const std::string& 
     }
   rename.inTracks(def, TrackDef::Target::joint);
   if (!def.skin) return;
-  rename(def.skin->bottom.joint), rename(def.skin->top.joint);
+  rename(def.skin->grid.bottom.joint), rename(def.skin->grid.top.joint);
   for (SkinBrushDef& brush : def.skin->brushes) rename(brush.joint);
 }
 
@@ -63,7 +63,7 @@ void renameSolid(CharacterDef& def, const std::string& from, const std::string& 
   rename.inTracks(def, TrackDef::Target::solid);
   if (!def.skin) return;
   for (SkinRegionDef& region : def.skin->regions) rename(region.solid);
-  for (SkinAnchorDef& anchor : def.skin->anchors) rename(anchor.solid);
+  for (SkinAnchorDef& anchor : def.skin->grid.anchors) rename(anchor.solid);
 }
 
 }  // namespace fascia

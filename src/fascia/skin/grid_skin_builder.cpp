@@ -7,9 +7,11 @@
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
 #include <fascia/skin/cloth/cloth_choice.h>
+#include <fascia/skin/contact/face_lift.h>
 #include <fascia/skin/grid/attach.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/resample.h>
+#include <fascia/skin/point/face_samples.h>
 #include <fascia/skin/point/leapfrog.h>
 
 namespace fascia {
@@ -25,6 +27,8 @@ constexpr double kEndRadius = 0.022;
 // A skin whose waves need shorter steps than this rides on a coarse one with about so many points.
 constexpr double kFinestStep_s = 0.4e-3;
 constexpr std::size_t kCoarsePoints = 1200;
+// How deep a face may cut the flesh between its samples, as a share of the skin's size.
+constexpr double kFaceTolerance = 1e-3;
 
 template <class Visit>
 void forEachPoint(const GridLayout& g, const Visit& visit) {
@@ -48,7 +52,7 @@ std::vector<std::array<std::uint32_t, 3>> cellTriangles(const GridLayout& g) {
 SkinParts GridSkinBuilder::build() {
   report_.checkValues(def_);
   if (!checkGrid()) return {};
-  layout_ = {def_.columns, def_.rows, true};
+  layout_ = {def_.grid.columns, def_.grid.rows, true};
   if (!checkPoints() || !findJoints() || !layAround()) return {};
   findSource();
   setQuantities();
@@ -64,8 +68,8 @@ SkinParts GridSkinBuilder::build() {
 }
 
 bool GridSkinBuilder::checkGrid() const {
-  const bool columns = report_.checkSide("/grid/0", def_.columns);
-  const bool rows = report_.checkSide("/grid/1", def_.rows);
+  const bool columns = report_.checkSide("/grid/0", def_.grid.columns);
+  const bool rows = report_.checkSide("/grid/1", def_.grid.rows);
   return columns && rows;
 }
 
@@ -115,13 +119,13 @@ bool GridSkinBuilder::findJoints() {
     report_.error("", "found a skin, but no solids for it to lie on", "add at least one solid");
     return false;
   }
-  joint_[0] = report_.findJoint("/bottom/joint", def_.bottom.joint);
-  joint_[1] = report_.findJoint("/top/joint", def_.top.joint);
+  joint_[0] = report_.findJoint("/bottom/joint", def_.grid.bottom.joint);
+  joint_[1] = report_.findJoint("/top/joint", def_.grid.top.joint);
   return joint_[0].valid() && joint_[1].valid();
 }
 
 bool GridSkinBuilder::findEnds(EndRing (&rings)[2]) const {
-  const SkinEndDef* ends[2] = {&def_.bottom, &def_.top};
+  const SkinEndDef* ends[2] = {&def_.grid.bottom, &def_.grid.top};
   Vec3 origin[2];
   for (int e = 0; e < 2; ++e) origin[e] = jointFrame(e).point(ends[e]->position_m);
   for (int e = 0; e < 2; ++e) {
@@ -154,7 +158,7 @@ GridRestKey GridSkinBuilder::restKey() const {
   }
   key.endJoints = {jointFrame(0), jointFrame(1)};
   key.fat_m = def_.fat.thickness_m;
-  key.anchors = def_.anchors;
+  key.anchors = def_.grid.anchors;
   return key;
 }
 
@@ -196,15 +200,38 @@ std::shared_ptr<const GridWrap> GridSkinBuilder::wrapAnew(const GridWrapKey& key
   wrap->flesh = base_.flesh;
   wrap->posedFlesh = base_.posedFlesh;
   wrap->rest = wrappedShape(ends);
+  FaceSamples faces = sampleFaces(wrap->posedFlesh, cellTriangles(layout_), wrap->rest, wrap->fat_m,
+                                  kFaceTolerance * sizeOf(wrap->rest));
+  if (!faces.empty()) {
+    if (!isSaved()) liftRest(faces, *wrap);
+    wrap->faces = std::make_shared<FaceSamples>(std::move(faces));
+  }
   placePoints(*wrap);
   attach(*wrap);
   return wrap;
 }
 
+// Faces that are lifted whenever they are shown are no longer then than at rest.
+void GridSkinBuilder::liftRest(const FaceSamples& faces, GridWrap& wrap) const {
+  PointModel points;
+  points.fat.assign(layout_.storage(), static_cast<float>(wrap.fat_m));
+  points.free.assign(layout_.storage(), 0.f);
+  forEachPoint(layout_, [&](int, int j, std::size_t k) {
+    if (j > 0 && j + 1 < layout_.rows) points.free[k] = 1;
+  });
+  liftFaces(faces, wrap.posedFlesh, points, static_cast<float>(kFaceClearance * sizeOf(wrap.rest)),
+            wrap.rest);
+  fillPads(layout_, wrap.rest);
+}
+
+bool GridSkinBuilder::isSaved() const {
+  return def_.points && !def_.points->rest_position_m.empty();
+}
+
 VectorArray GridSkinBuilder::wrappedShape(const EndRing (&ends)[2]) const {
-  if (!def_.points || def_.points->rest_position_m.empty())
+  if (!isSaved())
     return shrinkWrap(base_.posedFlesh, layout_, ends[0], ends[1],
-                      {def_.fat.thickness_m, def_.cling});
+                      {def_.fat.thickness_m, def_.grid.cling});
   const GridLayout saved = savedLayout();
   VectorArray r(saved.storage());
   std::size_t p = 0;
@@ -265,9 +292,8 @@ void GridSkinBuilder::setRest(std::shared_ptr<const GridWrap> wrap, GridRestKey 
                               FollowedGrid followed) {
   auto shape = std::make_shared<SkinShape>();
   shape->rest = std::move(followed.rest);
-  Box box;
-  forEachPoint(layout_, [&](int, int, std::size_t k) { box.add(pointAt(shape->rest, k)); });
-  shape->size_m = size_m_ > 0 ? size_m_ : std::max(1e-6, box.size().norm());
+  shape->faces = wrap->faces;
+  shape->size_m = size_m_ > 0 ? size_m_ : sizeOf(shape->rest);
   for (int j = 1; j + 1 < layout_.rows; ++j)
     for (int i = 0; i < layout_.columns; i += static_cast<int>(PointBlock::kCapacity))
       shape->blocks.push_back(
@@ -287,6 +313,12 @@ void GridSkinBuilder::setRest(std::shared_ptr<const GridWrap> wrap, GridRestKey 
   parts_.shape = std::move(shape);
 }
 
+double GridSkinBuilder::sizeOf(const VectorArray& rest) const {
+  Box box;
+  forEachPoint(layout_, [&](int, int, std::size_t k) { box.add(pointAt(rest, k)); });
+  return std::max(1e-6, box.size().norm());
+}
+
 std::vector<GridAttachment::Fixed> GridSkinBuilder::fixEnds(SkinShape& shape) const {
   std::vector<GridAttachment::Fixed> fixed;
   for (int e = 0; e < 2; ++e) {
@@ -302,7 +334,7 @@ std::vector<GridAttachment::Fixed> GridSkinBuilder::fixEnds(SkinShape& shape) co
 
 // Strands that were moved by hand; `anchors` are those of all inner points, row by row.
 void GridSkinBuilder::overrideAnchors(std::vector<TissueAnchors::Anchor>& anchors) const {
-  for (const SkinAnchorDef& a : def_.anchors) {
+  for (const SkinAnchorDef& a : def_.grid.anchors) {
     const int column =
         layout_.wrapped(static_cast<int>(std::lround(a.u * layout_.columns)) % layout_.columns);
     const int row = static_cast<int>(std::lround(a.v * (layout_.rows - 1)));
@@ -378,8 +410,8 @@ void GridSkinBuilder::setNaturalLengths() {
 }
 
 void GridSkinBuilder::applyEdits() {
-  for (std::size_t n = 0; n < def_.anchors.size(); ++n)
-    report_.findSolid("/anchors/" + std::to_string(n) + "/solid", def_.anchors[n].solid);
+  for (std::size_t n = 0; n < def_.grid.anchors.size(); ++n)
+    report_.findSolid("/anchors/" + std::to_string(n) + "/solid", def_.grid.anchors[n].solid);
   if (std::ranges::none_of(changes_, std::identity{})) return;
   std::vector<EditPoint> points;
   std::vector<std::size_t> numbers(layout_.storage());
@@ -495,6 +527,7 @@ void GridSkinBuilder::layUnder(const GridLayout& fineLayout, const SkinParts& fi
   if (!wrap) {
     auto own = std::make_shared<GridWrap>(*fine.gridRest->wrap);
     own->layout = layout_;
+    own->faces = nullptr;  // of the fine grid, which is the one that is seen
     own->rest = resample(fineLayout, own->rest, layout_);
     own->anchors.clear(), own->placements.clear();
     placePoints(*own);

@@ -40,10 +40,13 @@ class GridSkinBuilder {
   void takeOverRest();
   void setRest(std::shared_ptr<const GridWrap> wrap, GridRestKey key, FollowedGrid followed);
   std::shared_ptr<const GridWrap> wrapAnew(const GridWrapKey& key, const EndRing (&ends)[2]) const;
+  bool isSaved() const;
+  void liftRest(const FaceSamples& faces, GridWrap& wrap) const;
   VectorArray wrappedShape(const EndRing (&ends)[2]) const;
   void placePoints(GridWrap& wrap) const;
   void attach(GridWrap& wrap) const;
   void overrideAnchors(std::vector<TissueAnchors::Anchor>& anchors) const;
+  double sizeOf(const VectorArray& rest) const;  // diagonal of its box
   std::vector<GridAttachment::Fixed> fixEnds(SkinShape& shape) const;
   void findSource();
   bool keepsQuantity(SkinQuantity quantity) const;

@@ -106,8 +106,8 @@ MeshRestKey MeshSkinBuilder::restKey() const {
     for (std::size_t i = 0; i < solid.parameterCount(); ++i)
       parameters.push_back(solid.parameter(static_cast<int>(i)));
   }
-  key.parts = def_.parts;
-  key.simulated = def_.pose.simulate;
+  key.parts = def_.mesh.parts;
+  key.simulated = def_.mesh.pose.simulate;
   return key;
 }
 
@@ -147,15 +147,15 @@ bool MeshSkinBuilder::checkDef() const {
     }
     ok = report_.checkPointLists(*def_.points, rig_.points_m.size(), "points of the mesh") && ok;
   }
-  for (std::size_t i = 0; i < def_.parts.size(); ++i) {
+  for (std::size_t i = 0; i < def_.mesh.parts.size(); ++i) {
     const auto named = [&](const RigPart& part) {
-      return part.name == def_.parts[i].name ||
-             (part.material >= 0 &&
-              rig_.materials[static_cast<std::size_t>(part.material)].name == def_.parts[i].name);
+      return part.name == def_.mesh.parts[i].name ||
+             (part.material >= 0 && rig_.materials[static_cast<std::size_t>(part.material)].name ==
+                                        def_.mesh.parts[i].name);
     };
     if (std::any_of(rig_.parts.begin(), rig_.parts.end(), named)) continue;
     report_.error("/parts/" + std::to_string(i) + "/name",
-                  "found no part or material named '" + def_.parts[i].name + "' in the mesh",
+                  "found no part or material named '" + def_.mesh.parts[i].name + "' in the mesh",
                   "'fascia info' lists them");
     ok = false;
   }
@@ -198,8 +198,8 @@ void MeshSkinBuilder::chooseFixed() {
   making_->fixed.assign(rig_.points_m.size(), 0);
   // Pieces that one joint carries (armour, eyes, a robot) stay hard unless a rule says otherwise.
   making_->rigid = stiffPieces({rig_.points_m, rig_.weights, rig_.triangles, rig_.joints});
-  if (def_.pose.simulate) fixLoosePieces();
-  for (const SkinPartDef& rule : def_.parts)
+  if (def_.mesh.pose.simulate) fixLoosePieces();
+  for (const SkinPartDef& rule : def_.mesh.parts)
     for (const RigPart& part : rig_.parts) {
       const bool material =
           part.material >= 0 &&
@@ -208,7 +208,7 @@ void MeshSkinBuilder::chooseFixed() {
       for (std::uint32_t v = 0; v < part.vertexCount; ++v) {
         const std::uint32_t point = rig_.vertices[part.firstVertex + v].point;
         making_->rigid[point] = rule.rigid ? 1 : 0;
-        if (def_.pose.simulate) making_->fixed[point] = making_->rigid[point];
+        if (def_.mesh.pose.simulate) making_->fixed[point] = making_->rigid[point];
       }
     }
 }
@@ -352,7 +352,7 @@ void MeshSkinBuilder::makePoseSkin() {
   }
   rigged->skin = evaluator(rest, joints);
   rigged->fleshSolids = base_.flesh.solidCount();
-  parts_.simulated = def_.pose.simulate;
+  parts_.simulated = def_.mesh.pose.simulate;
   VectorArray skin = shape_->rest, anchors = shape_->rest;
   VectorArray sags(shape_->rest.size());
   for (std::size_t k = 0; k < count; ++k) {
@@ -370,7 +370,7 @@ void MeshSkinBuilder::makePoseSkin() {
   parts_.attachment =
       std::make_shared<MeshAttachment>(rigged, std::move(sags), count, shape_->fixedPoints);
   parts_.rigged = std::move(rigged);
-  if (def_.fat.bulk_Pa > 0 && def_.pose.simulate) layFat(skin, anchors);
+  if (def_.fat.bulk_Pa > 0 && def_.mesh.pose.simulate) layFat(skin, anchors);
 }
 
 // With what the skin before has prepared, if only dials have changed.

@@ -53,6 +53,7 @@ struct SkinBase {
   const RiggedModel* rig = nullptr;  // the skin is this mesh; nullptr: a grid around the flesh
 };
 
+struct FaceSamples;
 struct GridSkin;
 struct GridRest;
 struct GridQuantitySource;
@@ -65,7 +66,8 @@ struct SkinShape {
   VectorArray rest;   // storage order, padding filled
   double size_m = 0;  // diagonal of its box
   std::vector<PointBlock> blocks;
-  std::vector<std::size_t> fixedPoints;  // storage indices
+  std::vector<std::size_t> fixedPoints;      // storage indices
+  std::shared_ptr<const FaceSamples> faces;  // that may have to be lifted; nullptr: none
 };
 
 // What a skin is made of: each part is constant and shared with the skins that were edited from it.
@@ -163,6 +165,7 @@ struct SkinStats {
   double step_min_s = 1e300, step_max_s = 0;
   double forces_s = 0, constraints_s = 0, other_s = 0;  // wall clock spent
   double max_penetration_m = 0;       // deepest point at the end of any measured frame
+  double max_face_depth_m = 0;        // deepest cut of a drawn face into a solid, likewise
   double max_edge_stretch = 0;        // edge length over rest-shape length
   std::uint64_t repaired_points = 0;  // points that had to be put back (never-explodes)
 };
@@ -206,18 +209,23 @@ void placeSkin(const Skin& skin, const SkinPose& pose, SkinState& state);
 void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double end_s,
                  SkinState& state, SkinWorkspace& workspace, SkinStats& stats);
 
-// Adds what a finished frame shows to `stats`: deepest penetration and largest stretch. Measured
-// afresh, outside of the step.
+// Adds what a finished frame shows to `stats`: deepest point, and largest stretch as it is shown.
+// Measured afresh, outside of the step.
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats);
+
+// Adds how deep the faces of `surface`, the state's, cut into the flesh.
+void measureFaces(const DistanceField& flesh, const TriangleMesh& surface, SkinStats& stats);
 
 // The same grid surface at another resolution (Turner & Gobbetti 1998, §6.5), at any
 // moment of a run.
 SkinState resampled(const Skin& from, const SkinState& state, const Skin& to);
 
 // The surface of a state for display and export; vertex order and triangles are the same in every
-// frame. A mesh: its drawn vertices (RiggedModel::vertices), without normals. A grid: the tube with
-// its ends capped, row by row columns + 1 points (the seam column twice for
-// its uv), then the centres of the bottom and the top cap. uv: u around, (0,0) = the top end.
-void skinSurface(const Skin& skin, const SkinState& state, TriangleMesh& mesh);
+// frame. Faces that flesh of the state's time comes through are lifted off it (face_lift.h). A
+// mesh: its drawn vertices (RiggedModel::vertices), without normals. A grid: the tube with its ends
+// capped, row by row columns + 1 points (the seam column twice for its uv), then the centres of the
+// bottom and the top cap. uv: u around, (0,0) = the top end.
+void skinSurface(const Skin& skin, const DistanceField& flesh, const SkinState& state,
+                 TriangleMesh& mesh);
 
 }  // namespace fascia

@@ -20,18 +20,18 @@ void SkinReport::checkValues(const SkinDef& def) const {
   const auto check = [this](const auto& part, const std::string& where) {
     validateTunables(part, pointer_ + where, diagnostics_);
   };
-  check(def, "");
+  check(def.grid, "");
   check(def.material, "/material");
   check(def.fat, "/fat");
   check(def.tissue, "/tissue");
-  check(def.pose, "/pose");
+  check(def.mesh.pose, "/pose");
   check(def.contact, "/contact");
-  check(def.bottom, "/bottom");
-  check(def.top, "/top");
+  check(def.grid.bottom, "/bottom");
+  check(def.grid.top, "/top");
   for (std::size_t i = 0; i < def.brushes.size(); ++i)
     check(def.brushes[i], entryOf("/brushes", i));
-  for (std::size_t i = 0; i < def.anchors.size(); ++i)
-    check(def.anchors[i], entryOf("/anchors", i));
+  for (std::size_t i = 0; i < def.grid.anchors.size(); ++i)
+    check(def.grid.anchors[i], entryOf("/anchors", i));
   for (std::size_t i = 0; i < def.regions.size(); ++i) checkRegion(def.regions[i], i);
 }
 

@@ -14,11 +14,11 @@ namespace {
 
 // Layout, little-endian: magic, u32 version; texts (u64 length, bytes): character file, texture,
 // motion; the rig if the character has one (version 2 and later); how many numbers the soft solids'
-// shapes are (version 3); rate, loop; the mesh; per frame time, posture, shapes, positions as
-// float32; stats, without how long anything took, so that equal runs give equal files: zeros stand
-// there, for programs that expect a number.
+// shapes are (version 3 and later); rate, loop; the mesh; per frame time, posture, shapes,
+// positions as float32; stats (version 4: with the depth of faces), without how long anything took,
+// so that equal runs give equal files: zeros stand there, for programs that expect a number.
 constexpr std::string_view kCacheMagic("FCACHE\x1a\n", 8);
-constexpr std::uint32_t kPlainVersion = 1, kRigVersion = 2, kSoftVersion = 3;
+constexpr std::uint32_t kPlainVersion = 1, kSoftVersion = 3, kFaceVersion = 4;
 constexpr std::size_t kMaxCacheBytes = std::size_t{8} << 30;
 
 template <class Vector>
@@ -67,10 +67,11 @@ std::span<const SampledMotion> motionNamed(const RiggedModel& model, const std::
 }
 
 template <class Stats, class Visit>
-void eachSkinStat(Stats& s, const Visit& visit) {
+void eachSkinStat(Stats& s, std::uint32_t version, const Visit& visit) {
   visit(s.steps), visit(s.rejected_steps), visit(s.step_min_s), visit(s.step_max_s);
   visit(s.forces_s), visit(s.constraints_s), visit(s.other_s), visit(s.max_penetration_m);
   visit(s.max_edge_stretch), visit(s.repaired_points);
+  if (version >= kFaceVersion) visit(s.max_face_depth_m);
 }
 
 std::size_t valueCount(const CharacterDef& def) {
@@ -81,12 +82,6 @@ std::size_t valueCount(const CharacterDef& def) {
 
 std::size_t shapeSize(const Recording& recording) {
   return recording.frames.empty() ? 0 : recording.frames.front().soft_shapes.size();
-}
-
-// Older programs still read what they can.
-std::uint32_t versionOf(const CharacterDef& def, const Recording& recording) {
-  if (shapeSize(recording) > 0) return kSoftVersion;
-  return def.rig ? kRigVersion : kPlainVersion;
 }
 
 Recording::Frame readFrame(ByteReader& in, std::size_t postureSize, std::size_t shapes,
@@ -119,12 +114,12 @@ void putCache(const CharacterDef& def, const Recording& recording, const Texture
   ByteWriter head;
   head.bytes = kCacheMagic;
   const std::size_t shapes = shapeSize(recording);
-  head.value(versionOf(def, recording));
+  head.value(kFaceVersion);
   head.text(characterText(def));
   head.text(texture ? texture->bytes : loadTexture(def).bytes);
   head.text(recording.motion);
   if (def.rig) writeRig(*def.rig->model, motionNamed(*def.rig->model, recording.motion), head);
-  if (shapes > 0) head.value(static_cast<std::uint64_t>(shapes));
+  head.value(static_cast<std::uint64_t>(shapes));
   head.value(recording.frame_rate_hz);
   head.value(static_cast<std::uint8_t>(recording.loop));
   writeMesh(head, recording.skin);
@@ -147,7 +142,7 @@ void putCache(const CharacterDef& def, const Recording& recording, const Texture
   ByteWriter tail;
   SkinStats untimed = recording.stats;
   untimed.forces_s = untimed.constraints_s = untimed.other_s = 0;
-  eachSkinStat(untimed, [&](const auto& value) { tail.value(value); });
+  eachSkinStat(untimed, kFaceVersion, [&](const auto& value) { tail.value(value); });
   tail.value(0.0);  // wall_s
   tail.value(recording.simulated_s);
   tail.value(recording.state_hash);
@@ -175,9 +170,9 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   if (!isCache(bytes)) in.fail("is not a Fascia cache");
   in.take(kCacheMagic.size());
   const auto version = in.value<std::uint32_t>();
-  if (version < kPlainVersion || version > kSoftVersion) {
+  if (version < kPlainVersion || version > kFaceVersion) {
     in.fail("has cache format " + std::to_string(version) + ", this program reads up to format " +
-            std::to_string(kSoftVersion));
+            std::to_string(kFaceVersion));
   }
   Cache cache;
   cache.def = readCharacterText(in.text(), file).def;
@@ -189,7 +184,7 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   recording.motion = in.text();
   if (cache.def.rig) cache.def.rig->model = std::make_shared<const RiggedModel>(readRig(in));
   const auto shapes =
-      version == kSoftVersion ? static_cast<std::size_t>(in.value<std::uint64_t>()) : 0;
+      version >= kSoftVersion ? static_cast<std::size_t>(in.value<std::uint64_t>()) : 0;
   recording.frame_rate_hz = in.value<double>();
   if (!(recording.frame_rate_hz > 0 && recording.frame_rate_hz <= 1e6)) {
     in.fail("has a frame rate out of range");
@@ -205,7 +200,7 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   for (std::uint64_t f = 0; f < frames; ++f) {
     recording.frames.push_back(readFrame(in, postureSize, shapes, recording.skin.positions.size()));
   }
-  eachSkinStat(recording.stats,
+  eachSkinStat(recording.stats, version,
                [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });
   recording.wall_s = in.value<double>();
   recording.simulated_s = in.value<double>();

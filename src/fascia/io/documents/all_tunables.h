@@ -14,7 +14,7 @@ void forEachCharacterTable(const Visit& visit) {
   visit(std::type_identity<FleshSolidDef>(), "/solids/*");
   visit(std::type_identity<SoftSolidDef>(), "/solids/*/soft");
   visit(std::type_identity<RigDef>(), "/rig");
-  visit(std::type_identity<SkinDef>(), "/skin");
+  visit(std::type_identity<SkinGridDef>(), "/skin");
   visit(std::type_identity<SkinEndDef>(), "/skin/bottom");
   visit(std::type_identity<SkinMaterialDef>(), "/skin/material");
   visit(std::type_identity<SkinFatDef>(), "/skin/fat");

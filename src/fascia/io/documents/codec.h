@@ -143,11 +143,18 @@ class ObjectCodec : public Codec<T> {
   template <class M>
   ObjectCodec& field(std::string name, M T::*member, std::type_identity_t<CodecPtr<M>> codec,
                      std::string help, Need need = Need::optional) {
-    auto entry = std::make_unique<TypedField<M>>();
-    entry->name = std::move(name), entry->help = std::move(help), entry->need = need;
-    entry->member = member, entry->codec = std::move(codec);
-    fields_.push_back(std::move(entry));
-    return *this;
+    return bind<M>(
+        [member](auto& value) -> auto& { return value.*member; }, std::move(name), std::move(codec),
+        std::move(help), need);
+  }
+  // A member of a part that files do not nest.
+  template <class P, class M>
+  ObjectCodec& field(std::string name, P T::*part, M P::*member,
+                     std::type_identity_t<CodecPtr<M>> codec, std::string help,
+                     Need need = Need::optional) {
+    return bind<M>(
+        [=](auto& value) -> auto& { return value.*part.*member; }, std::move(name),
+        std::move(codec), std::move(help), need);
   }
 
   void read(const Json& json, const JsonPath& path, Reading& reading, T& value) const override {
@@ -235,17 +242,27 @@ class ObjectCodec : public Codec<T> {
     virtual Json schema() const = 0;
     virtual bool same(const T&, const T&) const = 0;
   };
-  template <class M>
+  // at(value): the member.
+  template <class M, class At>
   struct TypedField final : Field {
-    M T::*member;
+    TypedField(At theAt, CodecPtr<M> theCodec) : at(theAt), codec(std::move(theCodec)) {}
+    At at;
     CodecPtr<M> codec;
     void read(const Json& json, const JsonPath& path, Reading& reading, T& value) const override {
-      codec->read(json, path, reading, value.*member);
+      codec->read(json, path, reading, at(value));
     }
-    Json write(const T& value) const override { return codec->write(value.*member); }
+    Json write(const T& value) const override { return codec->write(at(value)); }
     Json schema() const override { return codec->schema(); }
-    bool same(const T& a, const T& b) const override { return codec->same(a.*member, b.*member); }
+    bool same(const T& a, const T& b) const override { return codec->same(at(a), at(b)); }
   };
+
+  template <class M, class At>
+  ObjectCodec& bind(At at, std::string name, CodecPtr<M> codec, std::string help, Need need) {
+    auto entry = std::make_unique<TypedField<M, At>>(at, std::move(codec));
+    entry->name = std::move(name), entry->help = std::move(help), entry->need = need;
+    fields_.push_back(std::move(entry));
+    return *this;
+  }
 
   const Field* find(std::string_view name) const {
     for (const auto& entry : fields_) {

@@ -137,37 +137,38 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
  public:
   SkinCodec() : ObjectCodec("The elastic skin: the rig's mesh, or a tube between two joints.") {
     using S = SkinDef;
-    field("bottom", &S::bottom, endCodec(), "The first row; none on a rig");
-    field("top", &S::top, endCodec(), "The last row; none on a rig");
+    field("bottom", &S::grid, &SkinGridDef::bottom, endCodec(), "The first row; none on a rig");
+    field("top", &S::grid, &SkinGridDef::top, endCodec(), "The last row; none on a rig");
     field("material", &S::material,
           tunablesCodec<SkinMaterialDef>("Per square metre of skin at rest."), "");
     field("fat", &S::fat, tunablesCodec<SkinFatDef>("Between flesh and skin."), "");
     field("tissue", &S::tissue,
           tunablesCodec<SkinTissueDef>("The strands that hold the skin to the flesh."), "");
-    field("pose", &S::pose, tunablesCodec<SkinPoseDef>("How the rig's mesh follows its joints."),
-          "");
-    addTunables<S>(*this);
+    field("pose", &S::mesh, &SkinMeshDef::pose,
+          tunablesCodec<SkinPoseDef>("How the rig's mesh follows its joints."), "");
+    addTunables(*this, &S::grid);
     field("texture", &S::texture, texts(1000),
           "A PNG or JPEG in the folder of this file, or below it");
     field("color", &S::color, colorArrays(), "Where there is no texture");
     field("regions", &S::regions,
           listOf<SkinRegionDef>(std::make_shared<RegionCodec>(), kMaxListed), "Parts that differ");
     field("brushes", &S::brushes, listOf(brushCodec(), kMaxListed), "Dabs, in order");
-    field("anchors", &S::anchors, listOf(anchorCodec(), kMaxListed), "Strands moved by hand");
+    field("anchors", &S::grid, &SkinGridDef::anchors, listOf(anchorCodec(), kMaxListed),
+          "Strands moved by hand");
     field("points", &S::points, optionally(skinPointsCodec()),
           "Values per point, row by row from the bottom, in place of the above; on a rig one row "
           "in the order of its points");
     field("contact", &S::contact, tunablesCodec<SkinContactDef>("The skin against itself."), "");
-    field("parts", &S::parts, listOf(partCodec(), kMaxListed),
+    field("parts", &S::mesh, &SkinMeshDef::parts, listOf(partCodec(), kMaxListed),
           "Pieces of the rig's mesh that are to stay as they are: armour, buckles");
   }
 
   Json write(const SkinDef& skin) const override {
     Json out = ObjectCodec::write(skin);
-    const SkinDef standard;
-    if (skin.columns != standard.columns || skin.rows != standard.rows) {
+    const SkinGridDef standard;
+    if (skin.grid.columns != standard.columns || skin.grid.rows != standard.rows) {
       Json::Object& members = out.object();
-      members.insert(members.begin(), {"grid", Json::List{skin.columns, skin.rows}});
+      members.insert(members.begin(), {"grid", Json::List{skin.grid.columns, skin.grid.rows}});
     }
     return out;
   }
@@ -177,9 +178,9 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
                  SkinDef& skin) const override {
     if (member.key != "grid") return false;
     if (!expectPair(member.value, path, reading)) return true;
-    side_->read(member.value.list()[0], path[0], reading, skin.columns);
-    side_->read(member.value.list()[1], path[1], reading, skin.rows);
-    if (skin.columns > kMostGridPoints / skin.rows) {
+    side_->read(member.value.list()[0], path[0], reading, skin.grid.columns);
+    side_->read(member.value.list()[1], path[1], reading, skin.grid.rows);
+    if (skin.grid.columns > kMostGridPoints / skin.grid.rows) {
       reading.fault(member.value, path, "more than " + std::to_string(kMostGridPoints) + " points");
     }
     return true;
@@ -187,7 +188,7 @@ class SkinCodec final : public ObjectCodec<SkinDef> {
   void offerOthers(const Json&, NearestName& nearest) const override { nearest.offer("grid"); }
   void schemaOthers(Json& properties) const override {
     Json grid = pairSchema(side_->schema(), kGridSide.help);
-    grid.set("default", Json::List{SkinDef{}.columns, SkinDef{}.rows});
+    grid.set("default", Json::List{SkinGridDef{}.columns, SkinGridDef{}.rows});
     properties.set("grid", std::move(grid));
   }
 

@@ -47,6 +47,7 @@ Json statsOf(const Recording& recording) {
   out.set("share_constraints", share(stats.constraints_s));
   out.set("share_other", share(stats.other_s));
   out.set("max_penetration_m", stats.max_penetration_m);
+  out.set("max_face_depth_m", stats.max_face_depth_m);
   out.set("max_edge_stretch", stats.max_edge_stretch);
   out.set("repaired_points", count(stats.repaired_points));
   out.set("peak_memory_bytes", count(static_cast<std::uint64_t>(peakMemory_bytes())));

@@ -46,5 +46,14 @@ template <class Def, class T>
 void addTunables(ObjectCodec<T>& codec, std::initializer_list<std::string_view> leaveOut = {}) {
   addTunables<Def>(codec, leaveOut, [](const auto& row) { return codecOf(row); });
 }
+// Of a part that files do not nest.
+template <class T, class Part>
+void addTunables(ObjectCodec<T>& codec, Part T::*part) {
+  using Need = typename ObjectCodec<T>::Need;
+  forEachTunable<Part>([&](const auto& row) {
+    codec.field(std::string(row.key), part, row.member, codecOf(row), std::string(row.help),
+                row.isRequired ? Need::required : Need::optional);
+  });
+}
 
 }  // namespace fascia

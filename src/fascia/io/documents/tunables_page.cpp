@@ -69,7 +69,8 @@ std::string otherRows(std::string_view place) {
     return infoLine(kBasisOrder, side(BodyBasisDef{}.order)) +
            infoLine(kBasisCells, "affine, without cells");
   if (place == "/skin")
-    return infoLine(kGridSide, '[' + side(SkinDef{}.columns) + ", " + side(SkinDef{}.rows) + ']');
+    return infoLine(kGridSide,
+                    '[' + side(SkinGridDef{}.columns) + ", " + side(SkinGridDef{}.rows) + ']');
   if (place == "/skin/regions/*")
     return infoLine(kRegionU, "[0, 1]") + infoLine(kRegionV, "[0, 1]");
   if (place == "/motions/*/tracks/*/keys/*") return infoLine(kKeyValue, "must be given");

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <fascia/skin/contact/skin_contact.h>
-#include <fascia/skin/contact/solid_cull_kernels.h>
+#include <fascia/skin/contact/solid_motions.h>
 #include <fascia/skin/point/point_kernels.h>
 
 namespace fascia {
@@ -37,12 +36,7 @@ class FleshContact final : public SkinContact {
   // What is known from the last call; it saves work and changes no result.
   VectorArray last_;  // positions
   FloatArray gaps_;   // blocks x solids_.padded(): no point of the block is nearer
-  void followSolids(const MovingField& field);
-  static constexpr std::size_t kCorners = MovingField::kOutline;
-  using Corners = std::array<Eigen::Vector3f, kCorners>;
-  static CulledSolids::Motion motionBetween(std::span<const Eigen::Vector3f, kCorners> before,
-                                            const Corners& now);
-  std::vector<Eigen::Vector3f> corners_;  // of each solid's outline
+  SolidMotions motions_;
 };
 
 }  // namespace fascia

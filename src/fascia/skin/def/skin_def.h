@@ -247,27 +247,17 @@ constexpr auto tunables(const SkinPartDef*) {
   return std::tuple{tunable(&SkinPartDef::rigid, "rigid", "Carried by its joints as it is")};
 }
 
-struct SkinDef {
+// What only a skin that is a grid has: a tube around the flesh.
+struct SkinGridDef {
   int columns = 32, rows = 32;  // columns go around, rows from bottom to top
   SkinEndDef bottom, top;
-  SkinMaterialDef material;
-  SkinFatDef fat;
-  SkinTissueDef tissue;
-  SkinPoseDef pose;  // of an imported mesh
   double cling = 0.3;
-  std::string texture;  // PNG or JPEG beside the character file; empty = color
-  std::array<float, 3> color{0.86f, 0.66f, 0.56f};  // sRGB
-  std::vector<SkinRegionDef> regions;
-  std::vector<SkinBrushDef> brushes;
   std::vector<SkinAnchorDef> anchors;
-  std::optional<SkinPointsDef> points;
-  SkinContactDef contact;
-  std::vector<SkinPartDef> parts;  // of an imported mesh
-  bool operator==(const SkinDef&) const = default;
+  bool operator==(const SkinGridDef&) const = default;
 };
-constexpr auto tunables(const SkinDef*) {
+constexpr auto tunables(const SkinGridDef*) {
   return std::tuple{
-      tunable(&SkinDef::cling, "cling", "", {0, 1},
+      tunable(&SkinGridDef::cling, "cling", "", {0, 1},
               "How far the skin follows hollows: 0 spans them like a stocking, 1 fills every "
               "valley")};
 }
@@ -275,5 +265,29 @@ constexpr auto tunables(const SkinDef*) {
 inline constexpr TunableInfo kGridSide{
     "grid", "", {8, 4096}, "[columns around, rows along]; whole numbers, at most 1048576 points"};
 inline constexpr int kMostGridPoints = 1 << 20;
+
+// What only a skin that is an imported mesh has.
+struct SkinMeshDef {
+  SkinPoseDef pose;
+  std::vector<SkinPartDef> parts;
+  bool operator==(const SkinMeshDef&) const = default;
+};
+
+// A skin of a character: a mesh if that has a rig, a grid otherwise. Files do not tell the two
+// apart; they have the members of `grid` and `mesh` beside the others.
+struct SkinDef {
+  SkinGridDef grid;
+  SkinMeshDef mesh;
+  SkinMaterialDef material;
+  SkinFatDef fat;
+  SkinTissueDef tissue;
+  std::string texture;  // PNG or JPEG beside the character file; empty = color
+  std::array<float, 3> color{0.86f, 0.66f, 0.56f};  // sRGB
+  std::vector<SkinRegionDef> regions;
+  std::vector<SkinBrushDef> brushes;
+  std::optional<SkinPointsDef> points;
+  SkinContactDef contact;
+  bool operator==(const SkinDef&) const = default;
+};
 
 }  // namespace fascia

@@ -197,11 +197,11 @@ bool sameStructure(const SolidDef& a, const SolidDef& b) {
 
 GridWrapKey GridWrapKey::of(const SkinDef& def, JointId bottom, JointId top) {
   GridWrapKey key{};
-  key.columns = def.columns, key.rows = def.rows;
-  key.bottom = def.bottom, key.top = def.top;
+  key.columns = def.grid.columns, key.rows = def.grid.rows;
+  key.bottom = def.grid.bottom, key.top = def.grid.top;
   key.bottom.joint.clear(), key.top.joint.clear();
   key.endJoints[0] = bottom, key.endJoints[1] = top;
-  key.cling = def.cling;
+  key.cling = def.grid.cling;
   if (!def.points || (def.points->rest_position_m.empty() && def.points->anchor.empty()))
     return key;
   key.savedColumns = def.points->columns, key.savedRows = def.points->rows;

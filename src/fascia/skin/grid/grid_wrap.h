@@ -9,6 +9,7 @@
 #include <fascia/skin/def/skin_def.h>
 #include <fascia/skin/grid/grid_layout.h>
 #include <fascia/skin/grid/wrap.h>
+#include <fascia/skin/point/face_samples.h>
 #include <fascia/skin/point/tissue.h>
 
 namespace fascia {
@@ -39,6 +40,7 @@ struct GridWrap {
   std::vector<TissueAnchors::Anchor> anchors;     // the strands' inner ends, point by point
   std::vector<TissueAnchors::Anchor> placements;  // every point in its nearest solid
   VectorArray placed;                             // where those are: `rest`, but for rounding
+  std::shared_ptr<const FaceSamples> faces;       // nullptr: none are needed
 
   // The rest posture that it lies around.
   Flesh flesh;

@@ -63,13 +63,13 @@ double uniformValue(const SkinDef& def, SkinQuantity quantity) {
     case Q::tissue_rest_length:
       return def.tissue.rest_length_m.value_or(0);
     case Q::jiggle:
-      return def.pose.jiggle;
+      return def.mesh.pose.jiggle;
     case Q::muscle:
-      return def.pose.muscle;
+      return def.mesh.pose.muscle;
     case Q::volume:
-      return def.pose.volume;
+      return def.mesh.pose.volume;
     case Q::tightness:
-      return def.pose.tightness;
+      return def.mesh.pose.tightness;
   }
   return 0;
 }
