@@ -6,6 +6,7 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
+#include <fascia/skin/cloth/cloth_choice.h>
 #include <fascia/skin/contact/face_lift.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/resample.h>
@@ -90,6 +91,7 @@ SkinParts GridSkinBuilder::build() {
   setNaturalLengths();
   applyEdits();
   makeModel();
+  chooseScheme();
   // Without strands nothing draws the two grids together again when they drift apart.
   if (settings_.integrator == "auto" && def_.tissue.stiffness_N_per_m3 > 0 &&
       parts_.defaultStep_s < kFinestStep_s && layout_.pointCount() >= 2 * kCoarsePoints)
@@ -521,6 +523,14 @@ void GridSkinBuilder::makeModel() {
   parts_.points = std::move(model);
   parts_.quantities = quantities_;
   if (def_.contact.self) makeSelfContact();
+}
+
+void GridSkinBuilder::chooseScheme() {
+  parts_.cloth = settings_.integrator == "cloth" ||
+                 (settings_.integrator == "auto" &&
+                  suitsCloth(parts_.grid->elastic(), *parts_.points,
+                             settings_.gravity_m_per_s2.norm(), parts_.defaultStep_s));
+  if (parts_.cloth) parts_.defaultStep_s = clothStep_s(layout_.pointCount());
 }
 
 void GridSkinBuilder::makeSelfContact() {

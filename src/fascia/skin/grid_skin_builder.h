@@ -56,6 +56,7 @@ class GridSkinBuilder {
   void applyEdits();
   void makeTopology();
   void makeModel();
+  void chooseScheme();
   void makeSelfContact();
   void makeCoarse();
   void findFit();

@@ -29,8 +29,9 @@ namespace fascia {
 // How a skin is stepped through time; plain values from the character's simulation settings.
 struct SkinSettings {
   Vec3 gravity_m_per_s2{0, -9.81, 0};
-  // "auto": stabilised leapfrog, on two grids where the skin is fine; "leapfrog": on one grid with
-  // the step that its waves need; else a name of integrators().
+  // "auto": stabilised leapfrog, on two grids where the skin is fine, or the scheme of "cloth"
+  // where that suits (cloth_choice.h); "leapfrog": on one grid with the step that its waves need;
+  // "cloth": by limits (cloth_stepper.h), grids only; else a name of integrators().
   std::string integrator = "auto";
   double step_s = 0;  // fixed step or first guess; 0 = chosen from the material
   // Longest time over which the flesh near a point is taken as a flat half space moving at constant
@@ -80,6 +81,7 @@ struct SkinParts {
   std::shared_ptr<const PointModel> points;
   ContactResponse contactResponse;
   double defaultStep_s = 0;
+  bool cloth = false;  // stepped by limits
   std::shared_ptr<const SelfContactModel> selfContact;
   std::shared_ptr<const FatPressureModel> fatPressure;
   std::shared_ptr<const Skin> coarse;
@@ -131,6 +133,7 @@ class Skin {
   std::span<const PointBlock> blocks() const { return parts_.shape->blocks; }
   std::span<const std::size_t> fixedPoints() const { return parts_.shape->fixedPoints; }
   double defaultStep_s() const { return parts_.defaultStep_s; }
+  bool isCloth() const { return parts_.cloth; }  // stepped by limits, see cloth_stepper.h
   // The same skin at a resolution whose waves a step of about a millisecond resolves; nullptr if
   // this one's does. See leapfrog.h.
   const Skin* coarse() const { return parts_.coarse.get(); }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fascia/base/assert.h>
+#include <fascia/skin/cloth/cloth_stepper.h>
 #include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/ode_skin.h>
 #include <fascia/skin/posed_skin_run.h>
@@ -62,12 +63,18 @@ bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anc
   return !(speed < fastest * fastest && place < 1e18f);
 }
 
+std::unique_ptr<SurfaceStepper> makeSurface(const Skin& skin) {
+  if (!skin.isCloth()) return skin.topology().makeStepper();
+  return std::make_unique<ClothStepper>(*skin.grid()->topology, skin.restPosition(), skin.points(),
+                                        skin.quantities()[SkinQuantity::bending]);
+}
+
 }  // namespace
 
 SkinStepper::SkinStepper(const Skin& skin)
     : skin_(skin),
       placer_(skin.attachment().makePlacer()),
-      surface_(skin.topology().makeStepper()),
+      surface_(makeSurface(skin)),
       stretchLimit_(skin.topology().makeStretchLimit()),
       contact_(skin.makeContact()) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
@@ -75,7 +82,8 @@ SkinStepper::SkinStepper(const Skin& skin)
   if (skin.fatPressure())
     fatPressure_ = FatPressure(*skin.fatPressure(), skin.topology().storage());
   const std::string& integrator = skin.settings().integrator;
-  if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
+  if (integrator != "auto" && integrator != "leapfrog" && !skin.isCloth())
+    ode_ = std::make_unique<OdeSkin>(skin);
   if (integrator == "auto" && skin.coarse()) {
     coarse_ = std::make_unique<SkinStepper>(*skin.coarse());
     prolongation_ = Prolongation(skin.coarse()->grid()->layout(), skin.grid()->layout());
@@ -223,7 +231,8 @@ int SkinStepper::chooseStep(double duration_s) {
   const double h = duration_s / steps;
   // Frame times are rounded sums: only a real change of step is worth new coefficients.
   if (std::abs(h - coefficients_.step_s) > 1e-6 * h)
-    prepareStep(skin_.points(), skin_.contactResponse(), h, coefficients_);
+    prepareStep(skin_.points(), skin_.contactResponse(), h, coefficients_,
+                skin_.isCloth() ? AddedMass::none : AddedMass::asNeeded);
   return steps;
 }
 

@@ -10,7 +10,7 @@ namespace fascia {
 
 class OdeSkin;
 
-// Steps one skin: the stabilised leapfrog, or any integrator of the solver library.
+// Steps one skin: the stabilised leapfrog, by limits, or any integrator of the solver library.
 class SkinStepper final : public SkinRun {
  public:
   explicit SkinStepper(const Skin& skin);
