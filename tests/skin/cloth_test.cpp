@@ -201,6 +201,30 @@ TEST(Cloth, HasTheSameBitsOnAnyNumberOfThreads) {
   }
 }
 
+// The last column is as far from the first as any from the next, also where it starts far away.
+TEST(Cloth, ClosesTheSeamOfATube) {
+  for (const int columns : {24, 25}) {
+    PinnedSheet sheet = test::hung({columns, 20, true}, 1, 1e4);
+    std::fill(sheet.points.free.begin(), sheet.points.free.end(), 1.f);
+    sheet.gravity.setZero();
+    const double radius = test::at(sheet.rest, sheet.layout.at(0, 0)).z();
+    const double edge = 2 * kPi * radius / columns;
+    test::forEachPoint(sheet.layout, [&](int i, int, std::size_t k) {
+      const double turn = (2 * kPi - 4 * edge / radius) * i / columns;
+      test::put(sheet.position, k,
+                Vec3(radius * std::sin(turn), sheet.rest.y[k], radius * std::cos(turn)));
+    });
+    fillPads(sheet.layout, sheet.position);
+    Cloth cloth(sheet);
+    cloth.prepare(kStep_s);
+    const auto gap = [&] { return (cloth.place(0, 9) - cloth.place(columns - 1, 9)).norm(); };
+    ASSERT_GT(gap(), 3 * edge);
+    for (int n = 0; n < 60; ++n) cloth.run(3);
+    EXPECT_LT(gap(), 1.05 * edge) << columns;
+    EXPECT_GT(gap(), 0.5 * edge) << columns;
+  }
+}
+
 // A tube has no seam: columns beside it stretch as all others do.
 TEST(Cloth, StretchesATubeEvenly) {
   for (const int columns : {24, 25}) {
