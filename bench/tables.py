@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Puts the figures of bench/results/*.json into the tables of docs/performance.md.
 
-    fascia bench paper --json > bench/results/paper.json      (likewise scaling, peers)
+    fascia bench paper --json > bench/results/paper.json      (likewise scaling, sheet, peers)
     fascia_bench --benchmark_repetitions=5 --benchmark_format=json > bench/results/kernels.json
     bench/tables.py
 """
@@ -51,6 +51,16 @@ def scaling(results):
         f"{r['max_edge_stretch']:.2f}"] for r in results])
 
 
+def sheet(results):
+    head = ["points", "scheme", "steps", "threads", "× real time", "median",
+            "stretch, largest / 99th percentile", "deepest, mm", "lost points"]
+    return table(head, [[
+        r["points"], r["engine"], r["setting"], r["threads"], f"{r['realtime_ratio']:.1f}",
+        f"{r['realtime_ratio_median']:.1f}",
+        f"{100 * r['stretch_max']:.1f} / {100 * r['stretch_p99']:.1f} %",
+        f"{1e3 * r['penetration_m']:.2f}", f"{r['lost_points']:.0f}"] for r in results])
+
+
 def peers(results):
     head = ["points", "engine", "setting", "× real time", "stretch, largest / 99th percentile",
             "deepest, mm", "times Bullet"]
@@ -70,8 +80,8 @@ def kernels(results):
 def main():
     page = ROOT / "docs" / "performance.md"
     text = page.read_text()
-    for name, render in (("paper", paper), ("scaling", scaling), ("peers", peers),
-                         ("kernels", kernels)):
+    for name, render in (("paper", paper), ("scaling", scaling), ("sheet", sheet),
+                         ("peers", peers), ("kernels", kernels)):
         file = ROOT / "bench" / "results" / f"{name}.json"
         if not file.exists():
             continue

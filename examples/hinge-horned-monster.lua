@@ -28,7 +28,7 @@ wait(0.2)
 -- Fling: a thrown body flies from `mouth` to the throat in `flight` seconds.
 local flight = 0.25
 local mouth, throat = brow + vec(-0.9, -0.45), position("monster.throat")
-local throw = (throat - mouth) / flight + vec(0, 9.81) * (flight / 2)
+local throw = (throat - mouth) / flight + gravity() * (-flight / 2)
 release("horn.elbow")
 move("man.middle", mouth, 0.3, throw)
 release("man.middle")

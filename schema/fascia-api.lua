@@ -173,6 +173,10 @@ function connected(a, b) end
 ---@return number # s
 function time() end
 
+---What the scene's gravity accelerates bodies by.
+---@return vec # m/s²
+function gravity() end
+
 ---A random number; the seed of the run decides which.
 ---@param low? number 0 by default
 ---@param high? number 1 by default

@@ -17,6 +17,7 @@ void addBench(CLI::App& program, Console& console) {
   addReflexesBench(group, console);
   addEditingBench(group, console);
   addDrawingBench(group, console);
+  addSheetBench(group, console);
 #ifdef FASCIA_WITH_BULLET
   addPeersBench(group, console);
 #endif

@@ -5,6 +5,7 @@
 
 #include <fascia/io/documents/character_file.h>
 #include <fascia/io/documents/scene_file.h>
+#include <fascia/io/documents/stats_writer.h>
 #include <fascia/render/camera.h>
 #include <fascia/world/performance.h>
 
@@ -37,6 +38,8 @@ std::string renderCommand(const std::string& path, const std::string& motion, bo
 
 struct Checked {
   std::vector<Issue> warnings;
+  std::size_t conflicts = 0;  // of constraints
+  std::vector<Redundancy> redundancies;
   std::string next;  // the command that shows it
 };
 
@@ -45,13 +48,15 @@ Checked checkFile(const std::string& path, const Console& console) {
   if (!isSceneFile(path)) {
     const Character character = loadCharacter(path);
     const std::string motion = livelyMotion(character);
-    return {character.warnings(), renderCommand(path, motion, !motion.empty())};
+    return {character.warnings(), 0, {}, renderCommand(path, motion, !motion.empty())};
   }
   const Stage stage = loadStage(path);
   if (!stage.def().view.camera.empty()) parseCamera(stage.def().view.camera);
   const Performance performance(stage);
   reportTroubles(stage, performance.troubles(), console);
-  return {stage.warnings(), renderCommand(path, {}, true)};
+  const std::span<const Redundancy> found = performance.redundancies();
+  const std::size_t conflicts = reportRedundancies(found, console, path);
+  return {stage.warnings(), conflicts, {found.begin(), found.end()}, renderCommand(path, {}, true)};
 }
 
 std::string verdict(std::size_t warnings) {
@@ -61,13 +66,16 @@ std::string verdict(std::size_t warnings) {
 void check(const std::vector<std::string>& paths, const Console& console) {
   std::vector<Issue> issues;
   std::string next;
+  std::vector<Redundancy> redundancies;
   for (const std::string& path : paths) {
     try {
       Checked checked;
       withInput(path, {.command = "check", .character = true, .scene = true},
                 [&] { checked = checkFile(path, console); });
       console.warn(checked.warnings);
-      console.say(path + ": " + verdict(checked.warnings.size()));
+      console.say(path + ": " + verdict(checked.warnings.size() + checked.conflicts));
+      redundancies.insert(redundancies.end(), checked.redundancies.begin(),
+                          checked.redundancies.end());
       next = checked.next;
     } catch (const Error& error) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());
@@ -75,7 +83,10 @@ void check(const std::vector<std::string>& paths, const Console& console) {
   }
   if (!issues.empty()) throw Error(std::move(issues));
   if (paths.size() == 1) console.say("next: " + next);
-  console.answer(Json::Object{{"ok", true}, {"issues", Json::List{}}});
+  std::vector<Issue> none;
+  Json constraints = parseJson(redundanciesJson(redundancies), JsonLimits{}, none);
+  console.answer(Json::Object{
+      {"ok", true}, {"issues", Json::List{}}, {"constraints", std::move(constraints)}});
 }
 
 }  // namespace

@@ -10,13 +10,30 @@
 #include "progress.h"
 
 namespace fascia {
+namespace {
+
+// Options that would change nothing.
+void checkScene(const Stage& stage, const SimulationOptions& options) {
+  if (stage.def().characters.empty() && (!options.integrator.empty() || !options.grid.empty()))
+    throw Error("--integrator and --grid are for skins, which this scene has none of");
+  const double rate_hz =
+      options.frame_rate_hz > 0 ? options.frame_rate_hz : stage.def().simulation.frame_rate_hz;
+  if (options.step_s * rate_hz > 1 + 1e-9)
+    throw Error(fmt::format("--step: found {:g}, expected at most a frame of the scene, {:.4g} s",
+                            options.step_s, 1 / rate_hz));
+}
+
+}  // namespace
 
 Stage prepareStage(const std::string& path, const SimulationOptions& options,
                    const Console& console) {
   if (!options.motion.empty() || !options.joint_map.empty())
     throw Error("--motion and --joint-map are for characters; those of a scene move as it says");
+  if (options.step_s == 0)
+    throw Error("--step 0 is for characters; bodies of a scene have a step of at most a frame");
   Stage stage = loadStage(path, options.buildOptions());
   console.warn(stage.warnings());
+  checkScene(stage, options);
   return stage;
 }
 
@@ -46,6 +63,20 @@ void reportTroubles(const Stage& stage, std::span<const BodyTrouble> troubles,
     console.hint(fmt::format("… and {} more: --stats has all of it", troubles.size() - kMostLines));
 }
 
+std::size_t reportRedundancies(std::span<const Redundancy> redundancies, const Console& console,
+                               const std::string& file) {
+  std::vector<Issue> conflicts;
+  for (const Redundancy& redundancy : redundancies) {
+    if (redundancy.contradicts())
+      conflicts.push_back(
+          {{file, {}, {}}, redundancy.text(), "they meet half-way: drop one, or move its place"});
+    else
+      console.hint("note: " + redundancy.text());
+  }
+  console.warn(conflicts);
+  return conflicts.size();
+}
+
 void reportPerformance(const Stage& stage, const StageRecording& recording,
                        const std::vector<std::string>& outputs, const Console& console,
                        const std::string& cache) {
@@ -58,6 +89,7 @@ void reportPerformance(const Stage& stage, const StageRecording& recording,
                     : "read from cache " + cache;
   console.say(fmt::format("{} frames, {} bodies: {}", recording.frames.size(),
                           stage.bodies().bodyCount(), origin));
+  reportRedundancies(recording.redundancies, console);
   reportTroubles(stage, recording.troubles, console);
   if (recording.outcome == ScriptOutcome::succeeded) {
     if (anyFault(recording.troubles))

@@ -22,6 +22,10 @@ StageRecording perform(const Stage& stage, StageRecordOptions options, const Con
 // A line for each, up to a dozen.
 void reportTroubles(const Stage& stage, std::span<const BodyTrouble> troubles,
                     const Console& console);
+// Constraints that contradict each other as warnings, those that say something twice as notes.
+// Returns how many contradict.
+std::size_t reportRedundancies(std::span<const Redundancy> redundancies, const Console& console,
+                               const std::string& file = {});
 // A few lines about a performance for a person, the whole statistics for a machine. cache: the file
 // that it was read from, if it did not happen now.
 void reportPerformance(const Stage& stage, const StageRecording& recording,

@@ -58,12 +58,12 @@ TEST(RigCharacter, WalksInItsSkin) {
   CharacterState state = initialState(character, character.source(walk));
   SkinStats stats;
   TriangleMesh before, mesh;
-  skinSurface(*character.skin(), state.skin, before);
+  skinSurface(*character.skin(), state.flesh, state.skin, before);
   for (int frame = 0; frame < 30; ++frame) {
     advance(character, character.source(walk), 1.0 / 30, state, stats);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin, stats);
   }
-  skinSurface(*character.skin(), state.skin, mesh);
+  skinSurface(*character.skin(), state.flesh, state.skin, mesh);
   ASSERT_EQ(mesh.positions.size(), rig.vertices.size());
   double farthest = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {

@@ -108,7 +108,7 @@ inline bool sameBits(const VectorArray& a, const VectorArray& b) {
 // The longest edge over the size of the whole skin: an exploded skin is larger than its body.
 inline double longestTriangleEdge(const Skin& skin, const SkinState& state) {
   TriangleMesh mesh;
-  skinSurface(skin, state, mesh);
+  skin.topology().surface(state.position, mesh);
   float longest = 0;
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k)
@@ -133,7 +133,8 @@ inline double longestEdge(const Skin& skin, const SkinState& state) {
 // What the frames of a run showed at their worst.
 struct Worst {
   bool finite = true;
-  double penetration_m = 0, stretch = 0, longestEdge = 0;
+  double penetration_m = 0, longestEdge = 0;
+  double stretch = 0;      // of what is simulated; stats have that of what is shown
   double lastStretch = 0;  // of the last frame
   SkinStats stats;
 
@@ -158,9 +159,9 @@ inline Worst simulate(const Character& character, int motion, double frame_s, in
                 worst.stats);
     worst.longestEdge = std::max(worst.longestEdge, longestEdge(*character.skin(), state.skin));
     worst.lastStretch = character.skin()->grid()->elastic().maxStretch(state.skin.position);
+    worst.stretch = std::max(worst.stretch, worst.lastStretch);
   }
   worst.penetration_m = worst.stats.max_penetration_m;
-  worst.stretch = worst.stats.max_edge_stretch;
   return worst;
 }
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <thread>
 
 #include <fascia/io/cache/cache.h>
@@ -17,6 +18,8 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
+
+const std::filesystem::path kSceneExamples = FASCIA_SOURCE_DIR "/examples";
 
 // Two plates, one of them led by a script, beside the ball, which stands.
 constexpr const char* kScene = R"({
@@ -152,6 +155,93 @@ TEST_F(CliScene, OptionsOfCharactersAreRefusedAndViceVersa) {
   expectRefused({"bake", "swing.fascia.json", "-o", "a.glb", "--motion", "hop"}, "--motion");
   expectRefused({"bake", "swing.fascia.json", "-o", "a.glb", "--as", "bones"}, "--as");
   expectRefused({"bake", "ball.fascia.json", "-o", "a.glb", "--seed", "3"}, "--seed");
+}
+
+TEST_F(CliScene, OptionsThatWouldChangeNothingAreRefused) {
+  expectRefused({"bake", "swing.fascia.json", "-o", "a.glb", "--step", "0"}, "--step 0");
+  expectRefused({"bake", "swing.fascia.json", "-o", "a.glb", "--step", "0.04"}, "0.03333 s");
+  expectRefused({"bake", "swing.fascia.json", "-o", "a.glb", "--grid", "8x8"}, "--grid");
+  expectRefused({"bake", "swing.fascia.json", "-o", "a.glb", "--integrator", "leapfrog"},
+                "--integrator");
+  EXPECT_NE(hashOf({"--step", "0.001"}), hashOf({}));
+}
+
+TEST_F(CliScene, ScriptsKnowTheGravityWhichMayBeTwoNumbersInThePlane) {
+  std::string text = kScene;
+  text.replace(text.find("\"simulation\": {"), 15,
+               "\"simulation\": {\"gravity_m_per_s2\": [0.5, -3], ");
+  write("swing.fascia.json", text);
+  write("swing.lua", "local g = gravity()\nlog('gravity', g.x, g.y, g.z)\n");
+  EXPECT_THAT(run({"bake", "swing.fascia.json", "-o", "a.pc2"}).out,
+              HasSubstr("gravity 0.5 -3.0 0.0"));
+}
+
+// The monster's script, its prey scattered over `reach_m` at up to `speed_m_per_s`.
+std::string monster(double gravity, double reach_m, double speed_m_per_s) {
+  auto scene =
+      nlohmann::json::parse(readWhole(kSceneExamples / "hinge-horned-monster.fascia.json"));
+  scene["simulation"]["gravity_m_per_s2"] = {0, -gravity};
+  scene["simulation"]["frame_rate_hz"] = 30;
+  for (auto& body : scene["bodies"])
+    if (body["name"] == "man")
+      body["scatter"] = {{"position_m", {reach_m, 0}}, {"velocity_m_per_s", {speed_m_per_s, 0}}};
+  return scene.dump();
+}
+
+TEST_F(CliScene, TheMonstersReflexWorksInAnyGravityAndFromFarAway) {
+  write("hinge-horned-monster.lua", readWhole(kSceneExamples / "hinge-horned-monster.lua"));
+  for (const std::string& scene :
+       {monster(0, 0.6, 0.8), monster(24.5, 0.6, 0.8), monster(9.81, 2.4, 3.2)}) {
+    write("monster.fascia.json", scene);
+    for (const char* seed : {"1", "6"}) {
+      const Outcome bake = run({"bake", "monster.fascia.json", "-o", "m.pc2", "--seed", seed});
+      EXPECT_THAT(bake.out, HasSubstr("the script has succeeded")) << scene << " " << seed;
+    }
+  }
+}
+
+// A point of a sphere nailed to two places 0.5 m apart, or twice to the same.
+std::string nailedTwice(const std::string& second) {
+  return R"({"fascia": 1, "kind": "scene", "name": "c",
+    "bodies": [{"name": "a", "shape": "sphere", "radius_m": 0.3, "position_m": [0, 2, 0],
+                "points": {"p": [0, 0.3, 0]}}],
+    "places": {"x": [0, 2.3, 0], "y": [0.3, 2.7, 0]},
+    "constraints": [{"name": "one", "type": "nail", "points": ["a.p", "x"]},
+                    {"name": "two", "type": "nail", "points": ["a.p", ")" +
+         second + R"("]}],
+    "simulation": {"duration_s": 0.1}})";
+}
+
+TEST_F(CliScene, ConstraintsThatContradictAreNamedWithTheirDistance) {
+  write("conflict.fascia.json", nailedTwice("y"));
+  const Outcome check = run({"check", "conflict.fascia.json"});
+  EXPECT_EQ(check.exitCode, 0);
+  EXPECT_THAT(check.out, StartsWith("conflict.fascia.json: ok, 1 warning"));
+  for (const char* told : {"conflict.fascia.json: constraint", "'one'", "'two'", "0.5 m away"})
+    EXPECT_THAT(check.err, HasSubstr(told));
+  const Outcome bake =
+      run({"bake", "conflict.fascia.json", "-o", "c.pc2", "--stats", "c.json", "--json"});
+  EXPECT_THAT(bake.err, HasSubstr("0.5 m away"));
+  const auto checked = run({"check", "conflict.fascia.json", "--json"}).json();
+  for (const auto& found : {checked.at("constraints"), bake.json().at("stats").at("constraints"),
+                            nlohmann::json::parse(content("c.json")).at("constraints")}) {
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].at("kind"), "conflict");
+    EXPECT_EQ(found[0].at("rows"), 3);
+    EXPECT_NEAR(found[0].at("distance_m").get<double>(), 0.5, 1e-6);
+    EXPECT_NE(found[0].at("constraint"), found[0].at("with").at(0));
+  }
+}
+
+TEST_F(CliScene, ConstraintsThatSayTheSameTwiceAreANote) {
+  write("same.fascia.json", nailedTwice("x"));
+  const Outcome check = run({"check", "same.fascia.json"});
+  EXPECT_THAT(check.out, StartsWith("same.fascia.json: ok\n"));
+  EXPECT_THAT(check.err, StartsWith("note: constraint "));
+  EXPECT_THAT(check.err, testing::Not(HasSubstr("away")));
+  const auto checked = run({"check", "same.fascia.json", "--json"}).json();
+  EXPECT_EQ(checked.at("constraints").at(0).at("kind"), "redundant");
+  EXPECT_TRUE(checked.at("warnings").empty());
 }
 
 TEST_F(CliScene, InputsAreNotOverwritten) {

@@ -192,8 +192,7 @@ TEST(Stats, HoldsEveryKey) {
   for (const char* key :
        {"vertices", "simulated_s", "wall_s", "realtime_ratio", "steps", "rejected_steps",
         "step_min_s", "step_max_s", "share_forces", "share_constraints", "share_other",
-        "max_penetration_m", "max_face_depth_m", "max_edge_stretch", "peak_memory_bytes",
-        "state_hash"}) {
+        "max_penetration_m", "max_edge_stretch", "peak_memory_bytes", "state_hash"}) {
     EXPECT_THAT(text, HasSubstr(std::string("\"") + key + "\": "));
   }
   EXPECT_THAT(text, HasSubstr("\"share_forces\": 0.75"));

@@ -59,6 +59,22 @@ TEST(StretchLimit, LeavesWhatIsWithinItAlone) {
   EXPECT_EQ(sheet.velocity.y, before.velocity.y);
 }
 
+// Every single edge, by one that is too long alone; those on the border and those that do not fill
+// a vector too.
+TEST(StretchLimit, SeesEveryEdge) {
+  Sheet sheet(19, 5);
+  const VectorArray flat = sheet.position;
+  test::forEachPoint(sheet.layout, [&](int i, int j, std::size_t k) {
+    const Vec3 away = kSpacing_m * Vec3(0, 0, 1);
+    setPoint(sheet.position, k, pointAt(flat, k) + away);
+    // √2 at all of its edges: beyond 1.25, within 1.25 times 1.2.
+    EXPECT_TRUE(sheet.limit.exceeded(sheet.position, 0.1f)) << i << ' ' << j;
+    EXPECT_FALSE(sheet.limit.exceeded(sheet.position, 0.2f)) << i << ' ' << j;
+    setPoint(sheet.position, k, pointAt(flat, k));
+  });
+  EXPECT_FALSE(sheet.limit.exceeded(sheet.position, 0));
+}
+
 // The last row is taken 2 % of the sheet's length farther than it can go without tearing at it;
 // edges alone would pull along few rows of many.
 TEST(StretchLimit, PullsFartherByItsLevels) {

@@ -197,7 +197,8 @@ double deepest(const Performance& performance, const Stage& stage, const Vec3& c
                double radius_m) {
   const SceneCharacterDef& doll = stage.def().characters[0];
   TriangleMesh skin;
-  skinSurface(*doll.character->skin(), performance.character(0).skin, skin);
+  const CharacterState& state = performance.character(0);
+  skinSurface(*doll.character->skin(), state.flesh, state.skin, skin);
   double out = -1;
   for (const Eigen::Vector3f& p : skin.positions)
     out = std::max(out, radius_m - (placeOf(doll).point(p.cast<double>()) - center_m).norm());

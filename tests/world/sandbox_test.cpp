@@ -31,15 +31,16 @@ TEST(Sandbox, HasNothingThatReachesOut) {
 }
 
 TEST(Sandbox, HasNoOtherGlobalsThanThoseMeant) {
-  EXPECT_EQ(logOf(R"(
+  EXPECT_EQ(
+      logOf(R"(
     local names = {}
     for name in pairs(_ENV) do names[#names + 1] = name end
     log(table.concat(names, " "))
   )"),
-            "assert cancel chase connect connected distance error fail follow grab hold impulse "
-            "ipairs log math move pairs parallel position pull push random rawequal rawlen release "
-            "running select start stop string succeed table time tonumber tostring type vec "
-            "velocity wait wait_for");
+      "assert cancel chase connect connected distance error fail follow grab gravity hold impulse "
+      "ipairs log math move pairs parallel position pull push random rawequal rawlen release "
+      "running select start stop string succeed table time tonumber tostring type vec "
+      "velocity wait wait_for");
 }
 
 TEST(Sandbox, ReadsNoBytecode) {

@@ -235,6 +235,13 @@ void CharacterBuilder::checkIntegrator() {
   const std::string& name = simulation.integrator;
   if (!diagnostics_.ok() || !parts_.skin->isSimulated() || name == "auto" || name == "leapfrog")
     return;
+  if (name == "cloth") {
+    if (!parts_.skin->isCloth())
+      diagnostics_.error("/simulation/integrator",
+                         "found cloth, which steps grids, expected one that steps meshes",
+                         "choose auto");
+    return;
+  }
   const double longest_s = longestOdeStep_s(*parts_.skin);
   if (longest_s >= simulation.min_step_s) return;
   diagnostics_.error(

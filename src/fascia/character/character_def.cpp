@@ -5,7 +5,7 @@
 namespace fascia {
 
 std::vector<std::string_view> skinIntegrators() {
-  std::vector<std::string_view> names = {"auto", "leapfrog"};
+  std::vector<std::string_view> names = {"auto", "leapfrog", "cloth"};
   for (const IntegratorInfo& info : integrators()) names.push_back(info.name);
   return names;
 }

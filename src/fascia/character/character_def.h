@@ -14,7 +14,7 @@
 
 namespace fascia {
 
-// The skin's own two, and every method of the solver library.
+// The skin's own three, and every method of the solver library.
 std::vector<std::string_view> skinIntegrators();
 // The longest piece of a frame that is simulated at once.
 inline constexpr double kLongestFrame_s = 1.0 / 12;
@@ -35,8 +35,9 @@ constexpr auto tunables(const SimulationDef*) {
   using S = SimulationDef;
   return std::tuple{
       tunable(&S::frame_rate_hz, "frame_rate_hz", "Hz", {1, 1000}, "Frames that a bake writes"),
-      wordTunable(&S::integrator, "integrator", &skinIntegrators,
-                  "auto: the fast scheme that never explodes"),
+      wordTunable(
+          &S::integrator, "integrator", &skinIntegrators,
+          "auto: the fast scheme that never explodes; cloth: of sheets that hardly stretch"),
       tunable(&S::step_s, "step_s", "s", {0, kLongestFrame_s},
               "Fixed step or first guess; 0: chosen"),
       tunable(&S::min_step_s, "min_step_s", "s", {1e-7, kLongestFrame_s},

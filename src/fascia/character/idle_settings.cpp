@@ -114,7 +114,8 @@ class Idle {
            {"integrator", "step_s", "min_step_s", "max_step_s", "position_tolerance_m",
             "velocity_tolerance", "correction_tolerance_m"},
            soft ? kSoftOnly : kNothingSteps);
-    } else if (simulation.integrator == "auto" || simulation.integrator == "leapfrog") {
+    } else if (simulation.integrator == "auto" || simulation.integrator == "leapfrog" ||
+               simulation.integrator == "cloth") {
       rows(simulation, "/simulation",
            {"min_step_s", "max_step_s", "position_tolerance_m", "velocity_tolerance",
             "correction_tolerance_m"},

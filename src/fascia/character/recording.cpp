@@ -23,10 +23,11 @@ void keepFrame(const Character& character, const CharacterState& state, bool kep
   FASCIA_ASSERT(state.posture.values.size() == character.skeleton().valueCount(),
                 "the state is of this character");
   if (character.skin()) {
-    skinSurface(*character.skin(), state.skin, out.skin);
+    skinSurface(*character.skin(), state.flesh, state.skin, out.skin);
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
                 out.stats);
-    measureFaces(state.flesh, out.skin, out.stats);
+    // A rig's own mesh goes where its joints take it, through flesh as well, and has many faces.
+    if (!character.skin()->rigged()) measureFaces(state.flesh, out.skin, out.stats);
   }
   if (!kept) return;
   out.frames.push_back(

@@ -11,7 +11,7 @@ void seeSurface(const Character& character, const CharacterState& state, Triangl
     surface = {};
     return;
   }
-  skinSurface(*character.skin(), state.skin, surface);
+  skinSurface(*character.skin(), state.flesh, state.skin, surface);
 }
 
 struct Painter::Impl {

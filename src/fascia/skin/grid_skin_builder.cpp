@@ -6,6 +6,8 @@
 
 #include <fascia/base/parallel.h>
 #include <fascia/math/points.h>
+#include <fascia/skin/cloth/cloth_choice.h>
+#include <fascia/skin/contact/face_lift.h>
 #include <fascia/skin/grid/grid_kernels.h>
 #include <fascia/skin/grid/resample.h>
 #include <fascia/skin/point/attach.h>
@@ -89,6 +91,7 @@ SkinParts GridSkinBuilder::build() {
   setNaturalLengths();
   applyEdits();
   makeModel();
+  chooseScheme();
   // Without strands nothing draws the two grids together again when they drift apart.
   if (settings_.integrator == "auto" && def_.tissue.stiffness_N_per_m3 > 0 &&
       parts_.defaultStep_s < kFinestStep_s && layout_.pointCount() >= 2 * kCoarsePoints)
@@ -240,12 +243,32 @@ std::shared_ptr<const GridWrap> GridSkinBuilder::wrapAnew(const GridWrapKey& key
   wrap->flesh = base_.flesh;
   wrap->posedFlesh = base_.posedFlesh;
   wrap->rest = wrappedShape(ends);
-  placePoints(*wrap);
-  attach(*wrap);
   FaceSamples faces = sampleFaces(wrap->posedFlesh, cellTriangles(layout_), wrap->rest, wrap->fat_m,
                                   kFaceTolerance * sizeOf(wrap->rest));
-  if (!faces.empty()) wrap->faces = std::make_shared<FaceSamples>(std::move(faces));
+  if (!faces.empty()) {
+    if (!isSaved()) liftRest(faces, *wrap);
+    wrap->faces = std::make_shared<FaceSamples>(std::move(faces));
+  }
+  placePoints(*wrap);
+  attach(*wrap);
   return wrap;
+}
+
+// Faces that are lifted whenever they are shown are no longer then than at rest.
+void GridSkinBuilder::liftRest(const FaceSamples& faces, GridWrap& wrap) const {
+  PointModel points;
+  points.fat.assign(layout_.storage(), static_cast<float>(wrap.fat_m));
+  points.free.assign(layout_.storage(), 0.f);
+  forEachPoint(layout_, [&](int, int j, std::size_t k) {
+    if (j > 0 && j + 1 < layout_.rows) points.free[k] = 1;
+  });
+  liftFaces(faces, wrap.posedFlesh, points, static_cast<float>(kFaceClearance * sizeOf(wrap.rest)),
+            wrap.rest);
+  fillPads(layout_, wrap.rest);
+}
+
+bool GridSkinBuilder::isSaved() const {
+  return def_.points && !def_.points->rest_position_m.empty();
 }
 
 // A straight tube, or one along the way through the flesh where that holds more of it.
@@ -263,7 +286,7 @@ VectorArray GridSkinBuilder::wrappedFlesh(const EndRing (&ends)[2]) const {
 }
 
 VectorArray GridSkinBuilder::wrappedShape(const EndRing (&ends)[2]) const {
-  if (!def_.points || def_.points->rest_position_m.empty()) return wrappedFlesh(ends);
+  if (!isSaved()) return wrappedFlesh(ends);
   const GridLayout saved = savedLayout();
   VectorArray r(saved.storage());
   std::size_t p = 0;
@@ -500,6 +523,14 @@ void GridSkinBuilder::makeModel() {
   parts_.points = std::move(model);
   parts_.quantities = quantities_;
   if (def_.contact.self) makeSelfContact();
+}
+
+void GridSkinBuilder::chooseScheme() {
+  parts_.cloth = settings_.integrator == "cloth" ||
+                 (settings_.integrator == "auto" &&
+                  suitsCloth(parts_.grid->elastic(), *parts_.points,
+                             settings_.gravity_m_per_s2.norm(), parts_.defaultStep_s));
+  if (parts_.cloth) parts_.defaultStep_s = clothStep_s(layout_.pointCount());
 }
 
 void GridSkinBuilder::makeSelfContact() {

@@ -40,6 +40,8 @@ class GridSkinBuilder {
   void takeOverRest();
   void setRest(std::shared_ptr<const GridWrap> wrap, GridRestKey key, FollowedGrid followed);
   std::shared_ptr<const GridWrap> wrapAnew(const GridWrapKey& key, const EndRing (&ends)[2]) const;
+  bool isSaved() const;
+  void liftRest(const FaceSamples& faces, GridWrap& wrap) const;
   VectorArray wrappedFlesh(const EndRing (&ends)[2]) const;
   VectorArray wrappedShape(const EndRing (&ends)[2]) const;
   void placePoints(GridWrap& wrap) const;
@@ -54,6 +56,7 @@ class GridSkinBuilder {
   void applyEdits();
   void makeTopology();
   void makeModel();
+  void chooseScheme();
   void makeSelfContact();
   void makeCoarse();
   void findFit();

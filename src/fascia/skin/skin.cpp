@@ -2,6 +2,7 @@
 #include <atomic>
 
 #include <fascia/skin/contact/face_depth.h>
+#include <fascia/skin/contact/face_lift.h>
 #include <fascia/skin/contact/flesh_contact.h>
 #include <fascia/skin/grid/resample.h>
 #include <fascia/skin/grid_skin_builder.h>
@@ -14,6 +15,18 @@ namespace {
 std::uint64_t nextSkinId() {
   static std::atomic<std::uint64_t> last{0};
   return ++last;
+}
+
+// Where a state's points are shown.
+const VectorArray& shown(const Skin& skin, const DistanceField& flesh, const SkinState& state,
+                         VectorArray& lifted) {
+  const FaceSamples* faces = skin.parts().shape->faces.get();
+  if (!faces) return state.position;
+  lifted = state.position;
+  liftFaces(*faces, flesh, skin.points(), static_cast<float>(kFaceClearance * skin.size_m()),
+            lifted);
+  skin.topology().complete(lifted);
+  return lifted;
 }
 
 SkinParts build(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
@@ -61,8 +74,9 @@ void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state,
   const std::unique_ptr<SkinContact> contact = skin.makeContact();
   stats.max_penetration_m = std::max<double>(
       stats.max_penetration_m, contact->deepest(*pose.field, skin.points(), state.position));
-  stats.max_edge_stretch =
-      std::max(stats.max_edge_stretch, skin.topology().maxStretch(state.position));
+  VectorArray lifted;
+  stats.max_edge_stretch = std::max(
+      stats.max_edge_stretch, skin.topology().maxStretch(shown(skin, *pose.field, state, lifted)));
 }
 
 void measureFaces(const DistanceField& flesh, const TriangleMesh& surface, SkinStats& stats) {
@@ -78,8 +92,10 @@ SkinState resampled(const Skin& from, const SkinState& state, const Skin& to) {
   return out;
 }
 
-void skinSurface(const Skin& skin, const SkinState& state, TriangleMesh& mesh) {
-  skin.topology().surface(state.position, mesh);
+void skinSurface(const Skin& skin, const DistanceField& flesh, const SkinState& state,
+                 TriangleMesh& mesh) {
+  VectorArray lifted;
+  skin.topology().surface(shown(skin, flesh, state, lifted), mesh);
 }
 
 }  // namespace fascia

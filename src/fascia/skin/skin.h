@@ -29,8 +29,9 @@ namespace fascia {
 // How a skin is stepped through time; plain values from the character's simulation settings.
 struct SkinSettings {
   Vec3 gravity_m_per_s2{0, -9.81, 0};
-  // "auto": stabilised leapfrog, on two grids where the skin is fine; "leapfrog": on one grid with
-  // the step that its waves need; else a name of integrators().
+  // "auto": stabilised leapfrog, on two grids where the skin is fine, or the scheme of "cloth"
+  // where that suits (cloth_choice.h); "leapfrog": on one grid with the step that its waves need;
+  // "cloth": by limits (cloth_stepper.h), grids only; else a name of integrators().
   std::string integrator = "auto";
   double step_s = 0;  // fixed step or first guess; 0 = chosen from the material
   // Longest time over which the flesh near a point is taken as a flat half space moving at constant
@@ -68,7 +69,7 @@ struct SkinShape {
   double size_m = 0;  // diagonal of its box
   std::vector<PointBlock> blocks;
   std::vector<std::size_t> fixedPoints;      // storage indices
-  std::shared_ptr<const FaceSamples> faces;  // nullptr: faces are no larger than what they cover
+  std::shared_ptr<const FaceSamples> faces;  // that may have to be lifted; nullptr: none
 };
 
 // What a skin is made of: each part is constant and shared with the skins that were edited from it.
@@ -80,6 +81,7 @@ struct SkinParts {
   std::shared_ptr<const PointModel> points;
   ContactResponse contactResponse;
   double defaultStep_s = 0;
+  bool cloth = false;  // stepped by limits
   std::shared_ptr<const SelfContactModel> selfContact;
   std::shared_ptr<const FatPressureModel> fatPressure;
   std::shared_ptr<const Skin> coarse;
@@ -130,8 +132,8 @@ class Skin {
   const SkinQuantities& quantities() const { return *parts_.quantities; }
   std::span<const PointBlock> blocks() const { return parts_.shape->blocks; }
   std::span<const std::size_t> fixedPoints() const { return parts_.shape->fixedPoints; }
-  const std::shared_ptr<const FaceSamples>& faces() const { return parts_.shape->faces; }
   double defaultStep_s() const { return parts_.defaultStep_s; }
+  bool isCloth() const { return parts_.cloth; }  // stepped by limits, see cloth_stepper.h
   // The same skin at a resolution whose waves a step of about a millisecond resolves; nullptr if
   // this one's does. See leapfrog.h.
   const Skin* coarse() const { return parts_.coarse.get(); }
@@ -171,7 +173,7 @@ struct SkinStats {
   double step_min_s = 1e300, step_max_s = 0;
   double forces_s = 0, constraints_s = 0, other_s = 0;  // wall clock spent
   double max_penetration_m = 0;       // deepest point at the end of any measured frame
-  double max_face_depth_m = 0;        // deepest cut of a drawn face into a solid, likewise
+  double max_face_depth_m = -1;       // deepest cut of a drawn face into a solid; -1: not measured
   double max_edge_stretch = 0;        // edge length over rest-shape length
   std::uint64_t repaired_points = 0;  // points that had to be put back (never-explodes)
 };
@@ -215,8 +217,8 @@ void placeSkin(const Skin& skin, const SkinPose& pose, SkinState& state);
 void advanceSkin(const Skin& skin, SkinPoseSource& poses, double start_s, double end_s,
                  SkinState& state, SkinWorkspace& workspace, SkinStats& stats);
 
-// Adds what a finished frame shows to `stats`: deepest penetration and largest stretch. Measured
-// afresh, outside of the step.
+// Adds what a finished frame shows to `stats`: deepest point, and largest stretch as it is shown.
+// Measured afresh, outside of the step.
 void measureSkin(const Skin& skin, const SkinPose& pose, const SkinState& state, SkinStats& stats);
 
 // Adds how deep the faces of `surface`, the state's, cut into the flesh.
@@ -227,9 +229,11 @@ void measureFaces(const DistanceField& flesh, const TriangleMesh& surface, SkinS
 SkinState resampled(const Skin& from, const SkinState& state, const Skin& to);
 
 // The surface of a state for display and export; vertex order and triangles are the same in every
-// frame. A mesh: its drawn vertices (RiggedModel::vertices), without normals. A grid: the tube with
-// its ends capped, row by row columns + 1 points (the seam column twice for
-// its uv), then the centres of the bottom and the top cap. uv: u around, (0,0) = the top end.
-void skinSurface(const Skin& skin, const SkinState& state, TriangleMesh& mesh);
+// frame. Faces that flesh of the state's time comes through are lifted off it (face_lift.h). A
+// mesh: its drawn vertices (RiggedModel::vertices), without normals. A grid: the tube with its ends
+// capped, row by row columns + 1 points (the seam column twice for its uv), then the centres of the
+// bottom and the top cap. uv: u around, (0,0) = the top end.
+void skinSurface(const Skin& skin, const DistanceField& flesh, const SkinState& state,
+                 TriangleMesh& mesh);
 
 }  // namespace fascia

@@ -16,7 +16,8 @@ bool SkinReport::checkSide(const std::string& where, int side) const {
   return kGridSide.range.contains(static_cast<double>(side));
 }
 
-void SkinReport::checkValues(const SkinDef& def) const {
+bool SkinReport::checkValues(const SkinDef& def) const {
+  const std::size_t before = diagnostics_.errors().size();
   const auto check = [this](const auto& part, const std::string& where) {
     validateTunables(part, pointer_ + where, diagnostics_);
   };
@@ -34,6 +35,7 @@ void SkinReport::checkValues(const SkinDef& def) const {
   for (std::size_t i = 0; i < def.grid.anchors.size(); ++i)
     check(def.grid.anchors[i], entryOf("/anchors", i));
   for (std::size_t i = 0; i < def.regions.size(); ++i) checkRegion(def.regions[i], i);
+  return diagnostics_.errors().size() == before;
 }
 
 void SkinReport::checkRegion(const SkinRegionDef& region, std::size_t index) const {

@@ -20,8 +20,8 @@ class SkinReport {
   void error(const std::string& where, std::string message, std::string hint = {}) const;
   // Of a grid: columns or rows.
   bool checkSide(const std::string& where, int side) const;
-  // Everything that has a range, whatever the skin lies on.
-  void checkValues(const SkinDef& def) const;
+  // Everything that has a range, whatever the skin lies on. True: all is within it.
+  bool checkValues(const SkinDef& def) const;
   // Saved per-point lists: `count` values within their ranges each, or none.
   bool checkPointLists(const SkinPointsDef& points, std::size_t count,
                        const std::string& expected) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fascia/base/assert.h>
+#include <fascia/skin/cloth/cloth_stepper.h>
 #include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/ode_skin.h>
 #include <fascia/skin/posed_skin_run.h>
@@ -33,9 +34,6 @@ constexpr float kSlidingReach = 0.02f;
 // How often stretched skin is shortened and taken out of the flesh again in one interval, at most.
 constexpr int kStretchRounds = 8;
 constexpr float kStretchedBeyond = 0.1f;  // as long as an edge is longer than it may be by so much
-// Kept between faces and flesh where there is as much fat, for what lies between the samples of
-// faces; a share of the skin's size.
-constexpr double kFaceClearance = 1e-3;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
 
@@ -65,23 +63,27 @@ bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anc
   return !(speed < fastest * fastest && place < 1e18f);
 }
 
+std::unique_ptr<SurfaceStepper> makeSurface(const Skin& skin) {
+  if (!skin.isCloth()) return skin.topology().makeStepper();
+  return std::make_unique<ClothStepper>(*skin.grid()->topology, skin.restPosition(), skin.points(),
+                                        skin.quantities()[SkinQuantity::bending]);
+}
+
 }  // namespace
 
 SkinStepper::SkinStepper(const Skin& skin)
     : skin_(skin),
       placer_(skin.attachment().makePlacer()),
-      surface_(skin.topology().makeStepper()),
+      surface_(makeSurface(skin)),
       stretchLimit_(skin.topology().makeStretchLimit()),
       contact_(skin.makeContact()) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
-  if (skin.faces())
-    faces_ = std::make_unique<FaceContact>(skin.faces(),
-                                           static_cast<float>(kFaceClearance * skin.size_m()));
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
   if (skin.fatPressure())
     fatPressure_ = FatPressure(*skin.fatPressure(), skin.topology().storage());
   const std::string& integrator = skin.settings().integrator;
-  if (integrator != "auto" && integrator != "leapfrog") ode_ = std::make_unique<OdeSkin>(skin);
+  if (integrator != "auto" && integrator != "leapfrog" && !skin.isCloth())
+    ode_ = std::make_unique<OdeSkin>(skin);
   if (integrator == "auto" && skin.coarse()) {
     coarse_ = std::make_unique<SkinStepper>(*skin.coarse());
     prolongation_ = Prolongation(skin.coarse()->grid()->layout(), skin.grid()->layout());
@@ -229,7 +231,8 @@ int SkinStepper::chooseStep(double duration_s) {
   const double h = duration_s / steps;
   // Frame times are rounded sums: only a real change of step is worth new coefficients.
   if (std::abs(h - coefficients_.step_s) > 1e-6 * h)
-    prepareStep(skin_.points(), skin_.contactResponse(), h, coefficients_);
+    prepareStep(skin_.points(), skin_.contactResponse(), h, coefficients_,
+                skin_.isCloth() ? AddedMass::none : AddedMass::asNeeded);
   return steps;
 }
 
@@ -275,7 +278,6 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
   const float reach =
       std::min(1.5f * state.maxSpeed_m_per_s * static_cast<float>(duration_s) + 0.005f * size,
                skin_.points().slideLimit.empty() ? size : kSlidingReach * size);
-  if (faces_) faces_->project(*pose.field, skin_.points(), state.position, state.velocity);
   const auto leaveFlesh = [&] {
     const SkinContact::Result result = contact_->project(
         *pose.field, skin_.points(), reach, static_cast<float>(skin_.contactResponse().restitution),

@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include <fascia/skin/contact/face_contact.h>
 #include <fascia/skin/grid/prolongation.h>
 #include <fascia/skin/skin.h>
 
@@ -11,7 +10,7 @@ namespace fascia {
 
 class OdeSkin;
 
-// Steps one skin: the stabilised leapfrog, or any integrator of the solver library.
+// Steps one skin: the stabilised leapfrog, by limits, or any integrator of the solver library.
 class SkinStepper final : public SkinRun {
  public:
   explicit SkinStepper(const Skin& skin);
@@ -43,7 +42,6 @@ class SkinStepper final : public SkinRun {
   std::unique_ptr<SurfaceStepper> surface_;
   StretchLimit stretchLimit_;
   std::unique_ptr<SkinContact> contact_;
-  std::unique_ptr<FaceContact> faces_;
   SelfContact selfContact_;
   FatPressure fatPressure_;
   VectorArray nextAnchor_, target_;

@@ -45,8 +45,8 @@ Vec3 longestAxis(const Solid& solid, const Transform& world) {
 }  // namespace
 
 SkinParts SurfaceSkinBuilder::build() {
-  report_.checkValues(def_);
-  if (!checkDef() || !lay() || !checkPoints()) return {};
+  // Out of its range an edge would make a mesh without end.
+  if (!report_.checkValues(def_) || !checkDef() || !lay() || !checkPoints()) return {};
   setQuantities();
   setNaturalLengths();
   applyEdits();

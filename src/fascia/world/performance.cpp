@@ -103,6 +103,7 @@ void Performance::addTies() {
     else
       system_.hold(std::move(tie.constraint));
   }
+  redundancies_ = system_.redundancies(state_);
   system_.satisfyConstraints(state_);
   system_.matchVelocities(state_);
 }

@@ -43,6 +43,9 @@ class Performance {
   Puppet& puppet() { return *puppet_; }
   // What was wrong with bodies at the start and the ends of frames, and which controls let go.
   std::span<const BodyTrouble> troubles() const { return troubles_.troubles(); }
+  // What ties of the scene say twice, or against each other, and how far apart that was at the
+  // start.
+  std::span<const Redundancy> redundancies() const { return redundancies_; }
   const Script* script() const { return script_.get(); }  // nullptr: the scene has none
   std::uint64_t hash() const;                             // over time, bodies and characters
 
@@ -69,6 +72,7 @@ class Performance {
   std::vector<std::unique_ptr<Actor>> actors_;
   std::vector<std::string> obstacles_;  // names of props and characters, as bodies meet them
   TroubleLog troubles_;
+  std::vector<Redundancy> redundancies_;
   std::vector<int> collapsedFrames_;  // per body: for how long it has had no volume
   std::size_t letGos_ = 0;            // of the puppet, that are among the troubles
 };

@@ -31,6 +31,11 @@ int time(ScriptCall& call) {
   return 1;
 }
 
+int gravity(ScriptCall& call) {
+  pushVector(call.L, call.puppet().gravity_m_per_s2());
+  return 1;
+}
+
 int random(ScriptCall& call) {
   const double low = call.has(1) ? call.number(1, kAnySign) : 0,
                high = call.has(1) ? call.number(2, {low, kAnySign.high}) : 1;
@@ -79,6 +84,7 @@ std::span<const ScriptFunction> queryFunctions() {
        "Tells whether connect() or grab() has tied two points, or one to a place.",
        connected},
       {"time", {}, "number", "s", "Simulated time since the start.", time},
+      {"gravity", {}, "vec", "m/s²", "What the scene's gravity accelerates bodies by.", gravity},
       {"random",
        {{"low", "number", "0 by default", true}, {"high", "number", "1 by default", true}},
        "number",

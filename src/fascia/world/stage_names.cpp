@@ -120,6 +120,18 @@ void Stage::checkScheme(Diagnostics& diagnostics) const {
                       "without ground, props and characters the others can be used");
 }
 
+namespace {
+
+// Without a name of its own it is known by what it ties.
+std::string nameOf(const SceneConstraintDef& def) {
+  std::string name = def.name;
+  if (name.empty())
+    for (const std::string& point : def.points) name += (name.empty() ? "" : " – ") + point;
+  return name;
+}
+
+}  // namespace
+
 Stage::Tie Stage::tie(const SceneConstraintDef& def, const OdeState& start) const {
   const BodyPoint a = *findPoint(def.points[0]);
   const BodyPoint* b = def.points.size() > 1 ? findPoint(def.points[1]) : nullptr;
@@ -127,7 +139,7 @@ Stage::Tie Stage::tie(const SceneConstraintDef& def, const OdeState& start) cons
   const Vec3 placeB = def.points.size() < 2 ? placeA
                       : b                   ? model_.point(start.r, *b)
                                             : *findPlace(def.points[1]);
-  const std::string name = def.name.empty() ? def.points[0] : def.name;
+  const std::string name = nameOf(def);
   switch (def.kind) {
     case Kind::line:
       return {makePointOnLine(name, a, placeA, def.direction)};

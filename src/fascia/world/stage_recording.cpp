@@ -39,6 +39,7 @@ StageRecording record(const Stage& stage, const StageRecordOptions& options) {
                     out.characters[i]);
   out.bodies = performance.bodyStats();
   out.troubles.assign(performance.troubles().begin(), performance.troubles().end());
+  out.redundancies.assign(performance.redundancies().begin(), performance.redundancies().end());
   if (const Script* script = performance.script()) {
     out.outcome = script->outcome();
     out.reason = script->reason();

@@ -23,7 +23,8 @@ struct StageRecording {
   ScriptOutcome outcome = ScriptOutcome::none;  // what the script says about it
   std::string reason;                           // of a failure
   std::vector<ScriptLogLine> log;
-  std::vector<BodyTrouble> troubles;  // see Performance; of all frames, also those not kept
+  std::vector<BodyTrouble> troubles;     // see Performance; of all frames, also those not kept
+  std::vector<Redundancy> redundancies;  // likewise; none of a recording that was read
   double wall_s = 0, simulated_s = 0;
   std::uint64_t state_hash = 0;  // of the end
 };

@@ -62,7 +62,7 @@ constexpr double kJitterOfJiggle = 2.5, kJitterOfStill = 1.3;
 
 // The surface that a character shows, vertex by vertex.
 void showCharacter(const Character& character, const CharacterState& state, TriangleMesh& surface) {
-  skinSurface(*character.skin(), state.skin, surface);
+  skinSurface(*character.skin(), state.flesh, state.skin, surface);
 }
 
 class FasciaContender : public Contender {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "bench/peers/sheet_scene.h"
+#include "bench/sheet/sheet_scene.h"
 
 namespace fascia {
 

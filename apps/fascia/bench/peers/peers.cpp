@@ -10,7 +10,7 @@
 #include "bench/benches.h"
 #include "bench/machine.h"
 #include "bench/peers/bullet_sheet.h"
-#include "bench/peers/fascia_sheet.h"
+#include "bench/sheet/fascia_sheet.h"
 #include "console.h"
 #include "simulation_options.h"
 
@@ -58,9 +58,10 @@ FasciaRun runFascia(const SheetScene& scene, const FasciaSettings& settings, int
 
 // With the softest material that stretches no more than `limit`.
 FasciaRun runFasciaWithin(const SheetScene& scene, double limit, int frames) {
-  FasciaSettings settings{kSoftest_N_per_m};
-  for (; settings.stiffness_N_per_m < kStiffest_N_per_m;
-       settings.stiffness_N_per_m *= std::sqrt(2)) {
+  FasciaSettings settings;
+  for (double stiffness = kSoftest_N_per_m; stiffness < kStiffest_N_per_m;
+       stiffness *= std::sqrt(2)) {
+    settings = FasciaSettings::skin(stiffness);
     if (!(runFascia(scene, settings, kSearchFrames).result.stretch <= limit)) continue;
     const FasciaRun run = runFascia(scene, settings, frames);
     if (run.result.stretch <= limit) return run;

@@ -93,6 +93,12 @@ std::string Puppet::nameOf(const Target& target) const {
   return point ? name(*point) : "a place";
 }
 
+Vec3 Puppet::gravity_m_per_s2() const {
+  Vec3 gravity = system_.settings().gravity_m_per_s2;
+  if (system_.model().dimension() == 2) gravity.z() = 0;
+  return gravity;
+}
+
 Vec3 Puppet::position_m(const Target& target) const {
   if (const auto* place = std::get_if<Vec3>(&target)) return inSpaceOf(system_, *place);
   if (const BodyPoint* on = bodyPointOf(target)) return system_.model().point(state_.r, *on);

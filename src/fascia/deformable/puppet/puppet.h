@@ -46,6 +46,7 @@ class Puppet {
 
   const BodySystem& system() const { return system_; }
   double time_s() const { return state_.t_s; }
+  Vec3 gravity_m_per_s2() const;
   Vec3 position_m(const Target& target) const;
   Vec3 velocity_m_per_s(const Target& target) const;
   double distance_m(const Target& a, const Target& b) const;

@@ -16,6 +16,10 @@ constexpr double kAgreement_m = 1e-9;
 
 }  // namespace
 
+bool Redundancy::contradicts() const {
+  return conflict_m > kAgreement_m;
+}
+
 std::string Redundancy::text() const {
   std::string message = std::string("constraint '") + constraint +
                         "': " + std::to_string(row_count) +
@@ -23,7 +27,7 @@ std::string Redundancy::text() const {
   for (std::size_t i = 0; i < others.size(); ++i)
     message += (i == 0 ? " from '" : ", '") + others[i] + "'";
   if (others.empty()) message += " from what cannot move anyway";
-  if (conflict_m > kAgreement_m) {
+  if (contradicts()) {
     char distance[32];
     std::snprintf(distance, sizeof distance, "%.3g", conflict_m);
     message += std::string(", but it wants a place ") + distance + " m away";
@@ -99,7 +103,7 @@ std::vector<Redundancy> Redundancies::describe(const ConstraintList& list) const
       found.push_back({list.constraint(static_cast<std::size_t>(row.block)).name(), 0, {}, 0});
     Redundancy& redundancy = found.back();
     ++redundancy.row_count;
-    redundancy.conflict_m = std::max(redundancy.conflict_m, std::abs(product(row, values)));
+    redundancy.conflict_m = std::hypot(redundancy.conflict_m, product(row, values));
     for (const Entry& entry : row.entries) {
       const std::string& name = list.constraint(static_cast<std::size_t>(entry.block)).name();
       const bool known = std::ranges::find(redundancy.others, name) != redundancy.others.end();

@@ -17,7 +17,8 @@ struct Redundancy {
   // How far what it demands is from what the others leave it, m; 0 but for rounding = no conflict.
   double conflict_m = 0;
 
-  // "constraint 'loop': 1 row follows from 'hinge a', 'hinge b'", and ", but contradicts …"
+  bool contradicts() const;  // by more than rounding
+  // "constraint 'loop': 1 row follows from 'hinge a', 'hinge b'", and ", but it wants a place …"
   std::string text() const;
 };
 

@@ -304,7 +304,7 @@ CodecPtr<ViewDef> viewCodec() {
 CodecPtr<SceneSimulationDef> sceneSimulationCodec() {
   using S = SceneSimulationDef;
   auto codec = std::make_shared<ObjectCodec<S>>("How time passes.");
-  addTunables<S>(*codec);
+  addSceneTunables<S>(*codec);
   return codec;
 }
 

@@ -47,7 +47,7 @@ Json statsOf(const Recording& recording) {
   out.set("share_constraints", share(stats.constraints_s));
   out.set("share_other", share(stats.other_s));
   out.set("max_penetration_m", stats.max_penetration_m);
-  out.set("max_face_depth_m", stats.max_face_depth_m);
+  if (stats.max_face_depth_m >= 0) out.set("max_face_depth_m", stats.max_face_depth_m);
   out.set("max_edge_stretch", stats.max_edge_stretch);
   out.set("repaired_points", count(stats.repaired_points));
   out.set("peak_memory_bytes", count(static_cast<std::uint64_t>(peakMemory_bytes())));
@@ -70,7 +70,27 @@ Json toJson(const Stage& stage, const BodyTrouble& trouble) {
   return out;
 }
 
+Json redundanciesAsJson(std::span<const Redundancy> redundancies) {
+  Json::List list;
+  for (const Redundancy& redundancy : redundancies) {
+    Json out;
+    out.set("kind", redundancy.contradicts() ? "conflict" : "redundant");
+    out.set("constraint", redundancy.constraint);
+    Json::List with;
+    for (const std::string& other : redundancy.others) with.push_back(other);
+    out.set("with", std::move(with));
+    out.set("rows", redundancy.row_count);
+    if (redundancy.contradicts()) out.set("distance_m", redundancy.conflict_m);
+    list.push_back(std::move(out));
+  }
+  return list;
+}
+
 }  // namespace
+
+std::string redundanciesJson(std::span<const Redundancy> redundancies) {
+  return printJson(redundanciesAsJson(redundancies));
+}
 
 std::string statsJson(const Recording& recording) {
   return printJson(statsOf(recording));
@@ -98,6 +118,7 @@ std::string statsJson(const Stage& stage, const StageRecording& recording) {
   Json::List troubles, log, characters;
   for (const BodyTrouble& trouble : recording.troubles) troubles.push_back(toJson(stage, trouble));
   out.set("troubles", std::move(troubles));
+  out.set("constraints", redundanciesAsJson(recording.redundancies));
   for (const ScriptLogLine& line : recording.log)
     log.push_back(Json::Object{{"time_s", line.time_s}, {"text", line.text}});
   for (const Recording& character : recording.characters) characters.push_back(statsOf(character));

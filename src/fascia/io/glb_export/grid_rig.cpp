@@ -97,7 +97,7 @@ GridRig gridRigOf(const Character& character) {
   const CharacterState rest = initialState(character, character.source(-1));
   GridRig rig;
   rig.rest_world = rest.skeleton.joint_world;
-  skinSurface(*character.skin(), rest.skin, rig.surface);
+  skinSurface(*character.skin(), rest.flesh, rest.skin, rig.surface);
   weld(rig);
   Box box;
   for (const Eigen::Vector3f& p : rig.points_m) box.add(p.cast<double>());

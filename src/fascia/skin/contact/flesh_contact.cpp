@@ -16,30 +16,20 @@ constexpr float kPushMargin = 8;
 // A solid's distance is an estimate whose error grows with the square of the depth: so far out of
 // it a point may be pushed without looking again.
 constexpr float kSure_m = 1e-3f;
-constexpr float kUnknown = SolidMotions::kUnknown;
 // Blocks handed to a thread at once; smaller skins are not worth waking threads for.
 constexpr std::size_t kBlocksPerTask = 128;
-
-bool near(const BlockBox& a, const Box& b, float reach) {
-  for (int k = 0; k < 3; ++k)
-    if (a.low[k] - reach > b.high[k] || a.high[k] + reach < b.low[k]) return false;
-  return true;
-}
 
 // One block of points against the solids of a field.
 struct BlockTest {
   const DistanceField& field;
   const PointBlock& block;
   ContactLanes& lanes;
-  std::span<std::int32_t> nearby;  // scratch for as many as the field has solids
-  std::span<float> gaps = {};      // per solid: no point is nearer than this; updated by visits
+  std::span<std::int32_t> nearby;  // scratch for CulledSolids::padded()
+  float* gaps = nullptr;           // per solid: no point is nearer than this; updated by visits
   std::size_t nearbyCount = 0;
 
-  bool findSolids(const BlockBox& box, std::span<const Box> boxes, float reach) {
-    nearbyCount = 0;
-    for (std::size_t s = 0; s < boxes.size(); ++s)
-      if ((gaps.empty() || gaps[s] <= reach) && near(box, boxes[s], reach))
-        nearby[nearbyCount++] = static_cast<std::int32_t>(s);
+  bool findSolids(const BlockBox& box, const CulledSolids& solids, float reach) {
+    nearbyCount = findNearSolids(box, solids, reach, gaps, nearby.data());
     return nearbyCount > 0;
   }
 
@@ -53,7 +43,7 @@ struct BlockTest {
       field.evaluate(SolidId(s), lanes.place.view(block.count), lanes.distance.data(),
                      lanes.normal.view(block.count));
       const float gap = absorbSolid(static_cast<float>(s), move, block.count, lanes);
-      if (!gaps.empty()) gaps[static_cast<std::size_t>(s)] = gap;
+      if (gaps) gaps[s] = gap;
       deepest = std::max(deepest, -gap);
     }
     return deepest;
@@ -108,33 +98,31 @@ struct BlockTest {
   }
 
   // Each point's from its nearest solid: solids that swell take long to say how fast.
-  void readFleshVelocities(const MovingField& moving) {
+  void readFleshVelocities(const MovingField& moving, float reach_m) {
     ContactLanes::Lanes3 place, velocity;
-    std::array<std::size_t, PointBlock::kCapacity> lane;
+    ContactLanes::Lanes<std::int32_t> lane;
     for (const std::int32_t s : nearby.first(nearbyCount)) {
-      std::size_t count = 0;
-      for (std::size_t l = 0; l < block.count; ++l) {
-        if (lanes.nearestSolid[l] != static_cast<float>(s)) continue;
-        place.x[count] = lanes.place.x[l];
-        place.y[count] = lanes.place.y[l];
-        place.z[count] = lanes.place.z[l];
-        lane[count++] = l;
-      }
+      const std::size_t count =
+          packNearest(static_cast<float>(s), reach_m, block.count, lanes, place, lane);
       if (count == 0) continue;
+      if (count == block.count) {
+        moving.velocity(SolidId(s), lanes.place.view(count), lanes.fleshVelocity.view(count));
+        return;
+      }
       moving.velocity(SolidId(s), place.view(count), velocity.view(count));
       for (std::size_t i = 0; i < count; ++i) {
-        lanes.fleshVelocity.x[lane[i]] = velocity.x[i];
-        lanes.fleshVelocity.y[lane[i]] = velocity.y[i];
-        lanes.fleshVelocity.z[lane[i]] = velocity.z[i];
+        const auto l = static_cast<std::size_t>(lane[i]);
+        lanes.fleshVelocity.x[l] = velocity.x[i];
+        lanes.fleshVelocity.y[l] = velocity.y[i];
+        lanes.fleshVelocity.z[l] = velocity.z[i];
       }
     }
   }
 };
 
-void readBoxes(const DistanceField& field, std::vector<Box>& boxes) {
-  boxes.resize(field.solidCount());
-  for (std::size_t s = 0; s < boxes.size(); ++s)
-    boxes[s] = field.bounds(SolidId(static_cast<std::int64_t>(s)));
+void readBoxes(const DistanceField& field, CulledSolids& solids) {
+  for (std::size_t s = 0; s < solids.count(); ++s)
+    solids.setBox(s, field.bounds(SolidId(static_cast<std::int64_t>(s))));
 }
 
 }  // namespace
@@ -148,10 +136,11 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
   FASCIA_ASSERT(velocity.size() == position.size() && points.fat.size() == position.size(),
                 "a number for each point");
   FASCIA_ASSERT(reach_m >= 0, "a search reaches somewhere");
-  readBoxes(field, boxes_);
+  if (!motions_.follow(field, solids_))
+    gaps_.assign(blocks_.size() * solids_.padded(), kUnknownGap_m);
+  readBoxes(field, solids_);
   last_.resize(position.size());
-  const std::size_t solids = boxes_.size();
-  if (!motions_.follow(field)) gaps_.assign(blocks_.size() * solids, kUnknown);
+  const std::size_t solids = solids_.padded();
   const std::size_t tasks = (blocks_.size() + kBlocksPerTask - 1) / kBlocksPerTask;
   nearby_.resize(tasks * solids);
   parallelFor(tasks, [&](std::size_t t) {
@@ -162,22 +151,23 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
       BlockMotion motion;
       const BlockBox box =
           loadContactLanes(blocks_[b], position, points.fat, lanes, &last_, &motion);
-      const std::span gaps(gaps_.data() + b * solids, solids);
-      for (std::size_t s = 0; s < solids; ++s) gaps[s] = motions_.left(gaps[s], motion, s);
+      float* gaps = gaps_.data() + b * solids;
+      ageGaps(motion, solids_, gaps);
       BlockTest test{field, blocks_[b], lanes, scratch, gaps};
       float searched = reach_m, pushed = 0;
-      bool any = test.findSolids(box, boxes_, searched);
+      bool any = test.findSolids(box, solids_, searched);
       for (int search = 0; any && search < kSearches; ++search) {
         pushed += test.leaveSolids(kPasses, kRetest_m);
         if (kPushMargin * pushed <= searched) break;
         // Pushed so far that solids beyond the search may have come near.
-        std::fill(gaps.begin(), gaps.end(), kUnknown);
+        std::fill_n(gaps, solids, kUnknownGap_m);
         searched = reach_m + 2 * kPushMargin * pushed;
-        any = test.findSolids(box, boxes_, searched);
+        any = test.findSolids(box, solids_, searched);
       }
-      for (float& gap : gaps) gap -= kPushMargin * pushed;
+      if (pushed > 0)
+        for (std::size_t s = 0; s < solids; ++s) gaps[s] -= kPushMargin * pushed;
       results_[b].maxCorrection_m = pushed;
-      if (any) test.readFleshVelocities(field);
+      if (any) test.readFleshVelocities(field, reach_m);
       const std::size_t count = blocks_[b].count;
       const ContactFindings found{lanes.place.view(count), lanes.nearest.data(),
                                   lanes.nearestNormal.view(count), lanes.fleshVelocity.view(count)};
@@ -190,15 +180,16 @@ FleshContact::Result FleshContact::project(const MovingField& field, const Point
 
 float FleshContact::deepest(const DistanceField& field, const PointModel& points,
                             const VectorArray& position) const {
-  std::vector<Box> boxes;
-  readBoxes(field, boxes);
-  std::vector<std::int32_t> nearby(boxes.size());
+  CulledSolids solids;
+  solids.resize(field.solidCount());
+  readBoxes(field, solids);
+  std::vector<std::int32_t> nearby(solids.padded());
   ContactLanes lanes{};
   float depth = 0;
   for (const PointBlock& block : blocks_) {
     const BlockBox box = loadContactLanes(block, position, points.fat, lanes);
     BlockTest test{field, block, lanes, nearby};
-    if (test.findSolids(box, boxes, 0)) depth = std::max(depth, test.visit(false));
+    if (test.findSolids(box, solids, 0)) depth = std::max(depth, test.visit(false));
   }
   return depth;
 }

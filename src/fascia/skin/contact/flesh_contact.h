@@ -30,12 +30,12 @@ class FleshContact final : public SkinContact {
 
   std::vector<PointBlock> blocks_;
   std::vector<Result> results_;
-  std::vector<Box> boxes_;
-  std::vector<std::int32_t> nearby_;  // per task: as many as there are solids
+  CulledSolids solids_;
+  std::vector<std::int32_t> nearby_;  // per task: solids_.padded()
 
   // What is known from the last call; it saves work and changes no result.
-  VectorArray last_;         // positions
-  std::vector<float> gaps_;  // blocks x solids: no point of the block is nearer
+  VectorArray last_;  // positions
+  FloatArray gaps_;   // blocks x solids_.padded(): no point of the block is nearer
   SolidMotions motions_;
 };
 

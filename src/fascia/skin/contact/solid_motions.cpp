@@ -6,10 +6,10 @@
 
 namespace fascia {
 
-bool SolidMotions::follow(const MovingField& field) {
+bool SolidMotions::follow(const MovingField& field, CulledSolids& out) {
   const std::size_t solids = field.solidCount();
-  const bool first = motions_.size() != solids;
-  motions_.resize(solids);
+  const bool first = corners_.size() != solids * kCorners;
+  if (first) out.resize(solids);
   corners_.resize(solids * kCorners);
   for (std::size_t s = 0; s < solids; ++s) {
     const SolidId id(static_cast<std::int64_t>(s));
@@ -19,29 +19,18 @@ bool SolidMotions::follow(const MovingField& field) {
     for (std::size_t c = 0; c < kCorners; ++c) now[c] = frame.point(outline[c]).cast<float>();
     Eigen::Vector3f* before = corners_.data() + s * kCorners;
     if (first) std::copy(now.begin(), now.end(), before);
-    motions_[s] = between(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
-    motions_[s].steepness = static_cast<float>(field.lipschitz(id));
+    CulledSolids::Motion motion =
+        between(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
+    motion.steepness = static_cast<float>(field.lipschitz(id));
+    out.setMotion(s, motion);
     std::copy(now.begin(), now.end(), before);
   }
   return !first;
 }
 
-// How much nearer they can have come: the difference of their points' ways at the block's centre,
-// and how much the ways differ over the block.
-float SolidMotions::left(float gap_m, const BlockMotion& block, std::size_t solid) const {
-  const Motion& motion = motions_[solid];
-  const Eigen::Vector3f center(block.center[0], block.center[1], block.center[2]);
-  const Eigen::Vector3f way(block.way[0], block.way[1], block.way[2]);
-  const Eigen::Vector3f matter = motion.change * (center - motion.origin) + motion.shift;
-  const float nearer = motion.steepness * ((way - matter).norm() + block.spread_m +
-                                           motion.turn * block.radius_m + motion.extra_m);
-  // Also what is not a number makes a gap unknown.
-  return nearer < -kUnknown ? gap_m - nearer : kUnknown;
-}
-
-SolidMotions::Motion SolidMotions::between(std::span<const Eigen::Vector3f, kCorners> before,
+CulledSolids::Motion SolidMotions::between(std::span<const Eigen::Vector3f, kCorners> before,
                                            std::span<const Eigen::Vector3f, kCorners> now) {
-  Motion m;
+  CulledSolids::Motion m;
   Eigen::Matrix3f edges, edgesNow;
   for (int a = 0; a < 3; ++a) {
     edges.col(a) = before[std::size_t{1} << a] - before[0];
@@ -61,7 +50,7 @@ SolidMotions::Motion SolidMotions::between(std::span<const Eigen::Vector3f, kCor
   }
   // A box without volume has no map: nothing is known then.
   if (!std::isfinite(m.turn) || !std::isfinite(m.extra_m)) {
-    m = {Eigen::Matrix3f::Zero(), m.origin, m.shift, 0, -kUnknown};
+    m = {Eigen::Matrix3f::Zero(), m.origin, m.shift, 0, -kUnknownGap_m};
   }
   return m;
 }

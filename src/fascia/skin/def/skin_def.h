@@ -290,8 +290,8 @@ struct SkinMeshDef {
   bool operator==(const SkinMeshDef&) const = default;
 };
 
-// A skin of a character: a mesh if that has a rig, a grid otherwise. Files do not tell the two
-// apart; they have the members of `grid` and `mesh` beside the others.
+// A skin of a character: a mesh if that has a rig, the surface of its solids if that is asked for,
+// a grid otherwise. Files have the members of `grid` and `mesh` beside the others.
 struct SkinDef {
   SkinGridDef grid;
   std::optional<SkinSurfaceDef> surface;  // given: no grid

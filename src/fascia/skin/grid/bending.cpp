@@ -113,13 +113,26 @@ void Bending::addForces(const VectorArray& r, VectorArray& force) const {
   }
 }
 
+int Bending::pointOf(std::size_t storage) const {
+  const std::size_t j = storage / layout_.stride();
+  return static_cast<int>(j * static_cast<std::size_t>(layout_.columns) + storage -
+                          layout_.row(static_cast<int>(j)));
+}
+
+void Bending::addStiffness(std::vector<Eigen::Triplet<double>>& entries) const {
+  for (const Node& node : nodes_) {
+    for (int a = 0; a < 3; ++a) {
+      const double scale = 2 * kMultiplicity[a] * node.weight * node.inverse[a] * node.inverse[a];
+      for (int p = 0; p < 9; ++p)
+        for (int q = 0; q < 9; ++q)
+          if (const double s = kSecond[a][p] * kSecond[a][q]; s != 0)
+            entries.emplace_back(pointOf(node.stencil[p]), pointOf(node.stencil[q]), scale * s);
+    }
+  }
+}
+
 void Bending::addForceJacobian(const VectorArray& r,
                                std::vector<Eigen::Triplet<double>>& entries) const {
-  const auto pointOf = [&](std::size_t storage) {
-    const std::size_t j = storage / layout_.stride();
-    return static_cast<int>(j * static_cast<std::size_t>(layout_.columns) + storage -
-                            layout_.row(static_cast<int>(j)));
-  };
   for (const Node& node : nodes_) {
     const Curvature at = curvature(node, r);
     for (int p = 0; p < 9; ++p) {

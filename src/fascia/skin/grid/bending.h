@@ -28,6 +28,9 @@ class Bending {
   // Gauss–Newton part of the Jacobian (negative semi-definite): −2 Σ ξ ∇B ∇Bᵀ.
   void addForceJacobian(const VectorArray& position,
                         std::vector<Eigen::Triplet<double>>& entries) const;
+  // Adds Σ 2ξ s sᵀ, s the second differences, point p = j·columns + i: the stiffness along normals,
+  // N/m, of a flat rest shape; of any shape, no less than that of the Gauss–Newton part at rest.
+  void addStiffness(std::vector<Eigen::Triplet<double>>& entries) const;
   // Adds a bound of the stiffness' row sums per point, N/m.
   void addStiffnessBound(FloatArray& bound) const;
 
@@ -39,6 +42,7 @@ class Bending {
     float rest[3];           // B0 of 11, 22, 12
   };
   struct Curvature;  // B and its gradient over the stencil
+  int pointOf(std::size_t storage) const;
   Curvature curvature(const Node& node, const VectorArray& r) const;
 
   GridLayout layout_;

@@ -2,23 +2,17 @@
 
 #include <algorithm>
 
+#include <fascia/skin/grid/grid_lines.h>
+
 namespace fascia {
 namespace {
 
 using Level = StretchLimit::Level;
 
-// Fewer rows or columns than this are not halved: there is nothing left to pass on.
+// No more rows or columns than this are not halved: there is nothing left to pass on.
 constexpr std::size_t kFewest = 7;
 
-// Which of a grid's rows or columns a level has; the first is 0.
 using Lines = std::vector<int>;
-
-Lines everySecond(const Lines& lines, bool closed) {
-  Lines half;
-  for (std::size_t i = 0; i < lines.size(); i += 2) half.push_back(lines[i]);
-  if (!closed && half.back() != lines.back()) half.push_back(lines.back());
-  return half;
-}
 
 class Builder {
  public:
@@ -26,17 +20,13 @@ class Builder {
       : grid_(grid), layout_(grid.layout()), maxStretch_(maxStretch) {}
 
   std::vector<Level> build() const {
+    const std::vector<GridLines> lines = gridLevels(layout_, kFewest);
     std::vector<Level> levels;
-    Lines columns, rows;
-    for (int i = 0; i < layout_.columns; ++i) columns.push_back(i);
-    for (int j = 0; j < layout_.rows; ++j) rows.push_back(j);
-    levels.push_back({edges(columns, rows), {}});
-    while (std::min(columns.size(), rows.size()) > kFewest) {
-      const Lines fineColumns = std::move(columns), fineRows = std::move(rows);
-      columns = everySecond(fineColumns, layout_.closed);
-      rows = everySecond(fineRows, false);
-      levels.push_back({edges(columns, rows), followers(columns, rows, fineColumns, fineRows)});
-    }
+    for (std::size_t l = 0; l < lines.size(); ++l)
+      levels.push_back({edges(lines[l].columns, lines[l].rows),
+                        l == 0 ? std::vector<StretchLimit::Follower>{}
+                               : followers(lines[l].columns, lines[l].rows, lines[l - 1].columns,
+                                           lines[l - 1].rows)});
     std::ranges::reverse(levels);
     return levels;
   }
@@ -45,16 +35,12 @@ class Builder {
   std::uint32_t at(int i, int j) const {
     return static_cast<std::uint32_t>(layout_.at(layout_.wrapped(i), j));
   }
-  // The line after the i-th; of the last column of a tube the first, counted on.
-  int next(const Lines& columns, std::size_t i) const {
-    return i + 1 < columns.size() ? columns[i + 1] : layout_.columns;
-  }
 
   void addRow(const Lines& columns, int j, std::size_t parity,
               std::vector<StretchLimit::Edge>& out) const {
     const std::size_t count = columns.size() - (layout_.closed ? 0 : 1);
     for (std::size_t i = parity; i < count; i += 2) {
-      const int end = next(columns, i);
+      const int end = lineAfter(columns, i, layout_.columns);
       float length_m = 0;
       for (int c = columns[i]; c < end; ++c) length_m += grid_.restLengthU_m(c, j);
       add(at(columns[i], j), at(end, j), length_m, out);

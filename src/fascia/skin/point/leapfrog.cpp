@@ -23,7 +23,7 @@ double neededMass(double stiffness_N_per_m, double h) {
 }  // namespace
 
 void prepareStep(const PointModel& p, const ContactResponse& contact, double h,
-                 StepCoefficients& out) {
+                 StepCoefficients& out, AddedMass added) {
   const std::size_t n = p.mass.size();
   for (FloatArray* a : {&out.gain, &out.keep, &out.weight, &out.strandGain, &out.carry})
     a->resize(n);
@@ -32,7 +32,8 @@ void prepareStep(const PointModel& p, const ContactResponse& contact, double h,
   out.bounce = static_cast<float>(contact.restitution);
   for (std::size_t k = 0; k < n; ++k) {
     const bool isFree = p.free[k] > 0;
-    const double mass = std::max<double>(p.mass[k], neededMass(p.stiffnessBound[k], h));
+    const double needed = added == AddedMass::asNeeded ? neededMass(p.stiffnessBound[k], h) : 0.0;
+    const double mass = std::max<double>(p.mass[k], needed);
     const double z = isFree ? 0.5 * h * p.drag[k] / mass : 0;
     out.gain[k] = isFree ? static_cast<float>(h / (mass * (1 + z))) : 0.f;
     out.keep[k] = isFree ? static_cast<float>(std::max(0.0, (1 - z) / (1 + z))) : 1.f;

@@ -26,9 +26,12 @@ struct ContactResponse {
   double restitution = 0;
 };
 
+// Schemes that are stable with any step by themselves add none.
+enum class AddedMass { asNeeded, none };
+
 // Fills `out` for step length h. Needs no memory when `out` already has the points' size.
 void prepareStep(const PointModel& points, const ContactResponse& contact, double step_s,
-                 StepCoefficients& out);
+                 StepCoefficients& out, AddedMass added = AddedMass::asNeeded);
 
 // The longest step (s) at which added mass stays within `share` of the free points' mass.
 // Bisection; used once when a skin is built.

@@ -50,22 +50,19 @@ void motionImpl(const PointBlock& block, const VectorArray& position, VectorArra
                 BlockMotion& out) {
   const D d;
   const V zero = hn::Zero(d);
-  const V3 zero3{zero, zero, zero};
   const auto used = [&](std::size_t l) HWY_ATTR {
     return hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(block.count)));
   };
   const Pointers now = pointers(static_cast<const VectorArray&>(position));
   const MutablePointers before = pointers(last);
-  V3 places = zero3, ways = zero3;
-  for (std::size_t l = 0; l < block.count; l += hn::Lanes(d)) {
-    const V3 r = before.at(block.first + l);
-    places = places + select(used(l), r, zero3);
-    ways = ways + select(used(l), now.at(block.first + l) - r, zero3);
+  const std::size_t middle = block.first + block.count / 2;
+  const auto axes = [&](int a) { return VectorArray::kAxes[a]; };
+  for (int a = 0; a < 3; ++a) {
+    out.center[a] = (last.*axes(a))[middle];
+    out.way[a] = (position.*axes(a))[middle] - out.center[a];
   }
-  const V share = hn::Set(d, 1.f / static_cast<float>(block.count));
-  const auto mean = [&](V v) HWY_ATTR { return hn::Mul(hn::SumOfLanes(d, v), share); };
-  const V3 center{mean(places.x), mean(places.y), mean(places.z)};
-  const V3 way{mean(ways.x), mean(ways.y), mean(ways.z)};
+  const V3 center{hn::Set(d, out.center[0]), hn::Set(d, out.center[1]), hn::Set(d, out.center[2])};
+  const V3 way{hn::Set(d, out.way[0]), hn::Set(d, out.way[1]), hn::Set(d, out.way[2])};
   V radius = zero, spread = zero;
   for (std::size_t l = 0; l < block.count; l += hn::Lanes(d)) {
     const V3 r = before.at(block.first + l), q = now.at(block.first + l);
@@ -73,11 +70,6 @@ void motionImpl(const PointBlock& block, const VectorArray& position, VectorArra
     radius = hn::Max(radius, hn::IfThenElseZero(used(l), dot(fromCenter, fromCenter)));
     spread = hn::Max(spread, hn::IfThenElseZero(used(l), dot(fromWay, fromWay)));
     before.set(block.first + l, q);
-  }
-  const V* parts[6] = {&center.x, &center.y, &center.z, &way.x, &way.y, &way.z};
-  for (int a = 0; a < 3; ++a) {
-    out.center[a] = hn::GetLane(*parts[a]);
-    out.way[a] = hn::GetLane(*parts[3 + a]);
   }
   out.radius_m = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, radius)));
   out.spread_m = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, spread)));
@@ -116,6 +108,33 @@ float absorbImpl(float solid, bool move, std::uint32_t count, ContactLanes& lane
     hn::StoreU(nearestSolid, d, lanes.nearestSolid.data() + l);
   }
   return hn::GetLane(hn::MinOfLanes(d, smallest));
+}
+
+std::uint32_t packImpl(float solid, float reach, std::uint32_t count, const ContactLanes& lanes,
+                       ContactLanes::Lanes3& place, ContactLanes::Lanes<std::int32_t>& lane) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  const auto pointersOf = [](const ContactLanes::Lanes3& a) HWY_ATTR {
+    return Pointers{a.x.data(), a.y.data(), a.z.data()};
+  };
+  std::size_t packed = 0;
+  for (std::size_t l = 0; l < count; l += hn::Lanes(d)) {
+    const auto used =
+        hn::Lt(hn::Iota(d, static_cast<float>(l)), hn::Set(d, static_cast<float>(count)));
+    const auto own = hn::Eq(hn::LoadU(d, lanes.nearestSolid.data() + l), hn::Set(d, solid));
+    const V3 push = pointersOf(lanes.pushNormal).at(l);
+    const auto felt = hn::Or(hn::Le(hn::LoadU(d, lanes.nearest.data() + l), hn::Set(d, reach)),
+                             hn::Gt(dot(push, push), hn::Zero(d)));
+    const auto wanted = hn::And(used, hn::And(own, felt));
+    if (hn::AllFalse(d, wanted)) continue;
+    const V3 from = pointersOf(lanes.place).at(l);
+    hn::CompressStore(from.x, wanted, d, place.x.data() + packed);
+    hn::CompressStore(from.y, wanted, d, place.y.data() + packed);
+    hn::CompressStore(from.z, wanted, d, place.z.data() + packed);
+    packed += hn::CompressStore(hn::Iota(di, static_cast<std::int32_t>(l)),
+                                hn::RebindMask(di, wanted), di, lane.data() + packed);
+  }
+  return static_cast<std::uint32_t>(packed);
 }
 
 inline Pointers pointers(const ConstVectors& a) {
@@ -224,6 +243,7 @@ namespace fascia {
 HWY_EXPORT(loadImpl);
 HWY_EXPORT(motionImpl);
 HWY_EXPORT(absorbImpl);
+HWY_EXPORT(packImpl);
 HWY_EXPORT(finishImpl);
 HWY_EXPORT(followImpl);
 HWY_EXPORT(followCoarseImpl);
@@ -238,6 +258,12 @@ BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
 
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes) {
   return HWY_DYNAMIC_DISPATCH(absorbImpl)(solid, move, count, lanes);
+}
+
+std::uint32_t packNearest(float solid, float reach_m, std::uint32_t count,
+                          const ContactLanes& lanes, ContactLanes::Lanes3& place,
+                          ContactLanes::Lanes<std::int32_t>& lane) {
+  return HWY_DYNAMIC_DISPATCH(packImpl)(solid, reach_m, count, lanes, place, lane);
 }
 
 float finishContact(const PointBlock& block, bool any, float reach_m, float restitution,

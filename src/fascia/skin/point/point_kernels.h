@@ -47,9 +47,9 @@ struct BlockBox {
 
 // How a block's points went since they were last seen.
 struct BlockMotion {
-  float center[3], way[3];  // where they were, and how far they went, on average
-  float radius_m;           // farthest that one was from the centre
-  float spread_m;           // farthest that one's way is from the average
+  float center[3], way[3];  // where the middle one was, and how far it went
+  float radius_m;           // farthest that one was from there
+  float spread_m;           // farthest that one's way is from that
 };
 
 // Loads a block's places and fat; returns the box of the points with their fat around them. With
@@ -61,6 +61,12 @@ BlockBox loadContactLanes(const PointBlock& block, const VectorArray& position,
 // Takes up the distances and normals to one solid: moves points that are inside out of it (if
 // `move`), keeps the nearest. Returns the smallest gap found, negative = inside.
 float absorbSolid(float solid, bool move, std::uint32_t count, ContactLanes& lanes);
+
+// Packs the places of the points nearest to a solid that finishContact() asks its matter's velocity
+// of: those within reach, and those that were moved. Returns how many; `lane` says which.
+std::uint32_t packNearest(float solid, float reach_m, std::uint32_t count,
+                          const ContactLanes& lanes, ContactLanes::Lanes3& place,
+                          ContactLanes::Lanes<std::int32_t>& lane);
 
 // What was found out about a run of points, from its first on.
 struct ContactFindings {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fascia/math/points.h>
 
@@ -28,6 +29,22 @@ void add(VectorArray& a, std::size_t k, const Eigen::Vector3f& v) {
 
 }  // namespace
 
+StretchLimit::StretchLimit(std::vector<Level> levels) : levels_(std::move(levels)) {
+  if (levels_.empty()) return;
+  std::vector<Edge> edges = levels_.back().edges;
+  const auto step = [](const Edge& e) { return std::int64_t{e.b} - std::int64_t{e.a}; };
+  std::ranges::sort(edges, {}, [&](const Edge& e) { return std::pair(step(e), e.a); });
+  for (const Edge& edge : edges) {
+    const bool goesOn = !runs_.empty() && runs_.back().step == step(edge) &&
+                        runs_.back().first + runs_.back().count == edge.a;
+    if (!goesOn)
+      runs_.push_back({edge.a, 0, static_cast<std::int32_t>(step(edge)),
+                       static_cast<std::uint32_t>(longest_m_.size())});
+    ++runs_.back().count;
+    longest_m_.push_back(edge.longest_m);
+  }
+}
+
 void StretchLimit::apply(const PointModel& points, VectorArray& position, VectorArray& velocity) {
   for (int cycle = 0; cycle < kCycles && exceeded(position, kTolerance); ++cycle) {
     for (const Level& level : levels_) {
@@ -42,13 +59,7 @@ void StretchLimit::apply(const PointModel& points, VectorArray& position, Vector
 }
 
 bool StretchLimit::exceeded(const VectorArray& position, float share) const {
-  if (levels_.empty()) return false;
-  const float most = (1 + share) * (1 + share);
-  return std::ranges::any_of(levels_.back().edges, [&](const Edge& e) {
-    const float x = position.x[e.b] - position.x[e.a], y = position.y[e.b] - position.y[e.a],
-                z = position.z[e.b] - position.z[e.a];
-    return x * x + y * y + z * z > most * e.longest_m * e.longest_m;
-  });
+  return anyEdgeExceeds(runs_, longest_m_, position, share);
 }
 
 void StretchLimit::sweep(const Level& level, const PointModel& points, VectorArray& position,

@@ -6,6 +6,7 @@
 
 #include <fascia/base/aligned.h>
 #include <fascia/skin/point/point_model.h>
+#include <fascia/skin/point/stretch_kernels.h>
 
 namespace fascia {
 
@@ -33,7 +34,7 @@ class StretchLimit {
   };
 
   StretchLimit() = default;
-  explicit StretchLimit(std::vector<Level> levels) : levels_(std::move(levels)) {}
+  explicit StretchLimit(std::vector<Level> levels);
 
   // Whether an edge is longer than it may be by more than this part of that.
   bool exceeded(const VectorArray& position, float share) const;
@@ -50,6 +51,8 @@ class StretchLimit {
                      VectorArray& values);
 
   std::vector<Level> levels_;        // the last one has all edges
+  std::vector<EdgeRun> runs_;        // of those
+  FloatArray longest_m_;             // in their order
   VectorArray position_, velocity_;  // before a level was swept
 };
 

@@ -1,4 +1,4 @@
-#include "bench/peers/fascia_sheet.h"
+#include "bench/sheet/fascia_sheet.h"
 
 #include <algorithm>
 #include <array>
@@ -9,19 +9,19 @@
 #include <fascia/field/field.h>
 #include <fascia/field/solid.h>
 #include <fascia/math/points.h>
+#include <fascia/skin/cloth/cloth_stepper.h>
 #include <fascia/skin/contact/flesh_contact.h>
-#include <fascia/skin/grid/grid_stepper.h>
+#include <fascia/skin/grid/grid_topology.h>
 #include <fascia/skin/point/leapfrog.h>
 
 namespace fascia {
 namespace {
 
-// Contact is renewed this often within a frame, and steps are as long as adding this share to the
-// mass allows, as in skins. Large sheets do not ride on coarse ones, as skins do: what keeps a fine
-// grid on its carrier is the tissue, and the sheet has none.
+// Contact is renewed this often within a frame of the leapfrog, whose steps are as long as adding
+// this share to the mass allows, as in skins. Large sheets do not ride on coarse ones, as skins do:
+// what keeps a fine grid on its carrier is the tissue, and the sheet has none.
 constexpr int kIntervalsPerFrame = 2;
 constexpr double kAddedMassShare = 0.02;
-constexpr double kShearShare = 0.4;  // shear over stretching stiffness, as in the default skin
 constexpr double kDrag_per_s = 0.5;
 
 class Spheres final : public Field {
@@ -72,13 +72,18 @@ class Spheres final : public Field {
   std::array<Vec3, kCount> velocity_;
 };
 
-ElasticGrid makeElastic(const SheetScene& scene, const GridLayout& g, double stiffness_N_per_m) {
+VectorArray restOf(const SheetScene& scene, const GridLayout& g) {
   VectorArray rest(g.storage());
   for (int j = 0; j < g.rows; ++j)
     for (int i = 0; i < g.columns; ++i)
       setPoint(rest, g.at(i, j), Vec3(i * scene.spacing_m(), 0, j * scene.spacing_m()));
-  const FloatArray stretch(g.storage(), static_cast<float>(stiffness_N_per_m));
-  const FloatArray shear(g.storage(), static_cast<float>(kShearShare * stiffness_N_per_m));
+  return rest;
+}
+
+ElasticGrid makeElastic(const GridLayout& g, const VectorArray& rest,
+                        const FasciaSettings& settings) {
+  const FloatArray stretch(g.storage(), static_cast<float>(settings.stiffness_N_per_m));
+  const FloatArray shear(g.storage(), static_cast<float>(settings.shear_N_per_m));
   return {g, rest, {stretch, stretch, shear, FloatArray(g.storage(), 1.f)}};
 }
 
@@ -110,12 +115,13 @@ std::vector<PointBlock> makeBlocks(const GridLayout& g) {
 
 class FasciaSheet final : public SheetSolver {
  public:
-  FasciaSheet(const SheetScene& scene, double stiffness_N_per_m)
+  FasciaSheet(const SheetScene& scene, const FasciaSettings& settings)
       : layout_{scene.side, scene.side, false},
-        elastic_(makeElastic(scene, layout_, stiffness_N_per_m)),
-        points_(makePoints(scene, layout_, elastic_)),
+        rest_(restOf(scene, layout_)),
+        topology_(layout_, makeElastic(layout_, rest_, settings), {}),
+        points_(makePoints(scene, layout_, topology_.elastic())),
         contact_(makeBlocks(layout_)),
-        stepper_(layout_),
+        intervals_(settings.clothSteps > 0 ? 1 : kIntervalsPerFrame),
         position_(layout_.storage()),
         velocity_(layout_.storage()) {
     around_.resize(layout_.storage());
@@ -123,24 +129,21 @@ class FasciaSheet final : public SheetSolver {
       for (int i = 0; i < layout_.columns; ++i)
         setPoint(position_, layout_.at(i, j), scene.start(i, j));
     fillPads(layout_, position_);
-    steps_ = static_cast<int>(std::ceil(kInterval_s / longestStep(points_, kAddedMassShare)));
-    prepareStep(points_, response_, kInterval_s / steps_, coefficients_);
+    choose(settings);
     meetSpheres();
   }
 
-  int stepsPerFrame() const { return kIntervalsPerFrame * steps_; }
+  int stepsPerFrame() const { return intervals_ * steps_; }
 
   void advanceFrame() override {
-    const SweepModel model{&layout_,
-                           &elastic_.coefficients(),
-                           {&points_,
+    const StepInputs inputs{&points_,
                             &coefficients_,
                             &around_,
                             nullptr,
-                            {0, -static_cast<float>(SheetScene::kGravity_m_per_s2), 0}}};
-    for (int n = 0; n < kIntervalsPerFrame; ++n) {
-      stepper_.run(model, 0, steps_, position_, velocity_);
-      time_s_ += kInterval_s;
+                            {0, -static_cast<float>(SheetScene::kGravity_m_per_s2), 0}};
+    for (int n = 0; n < intervals_; ++n) {
+      stepper_->run(inputs, steps_, position_, velocity_);
+      time_s_ += interval_s();
       meetSpheres();
     }
   }
@@ -151,12 +154,23 @@ class FasciaSheet final : public SheetSolver {
   }
 
  private:
-  static constexpr double kInterval_s = SheetScene::kFrame_s / kIntervalsPerFrame;
+  double interval_s() const { return SheetScene::kFrame_s / intervals_; }
+
+  void choose(const FasciaSettings& settings) {
+    if (settings.clothSteps > 0) {
+      stepper_ = std::make_unique<ClothStepper>(topology_, rest_, points_, FloatArray{});
+      steps_ = settings.clothSteps;
+    } else {
+      stepper_ = topology_.makeStepper();
+      steps_ = static_cast<int>(std::ceil(interval_s() / longestStep(points_, kAddedMassShare)));
+    }
+    prepareStep(points_, response_, interval_s() / steps_, coefficients_);
+  }
 
   // Out of the spheres, and their half spaces for the next interval.
   void meetSpheres() {
     spheres_.moveTo(time_s_);
-    const double reach = 2 * maxSpeed_m_per_s_ * kInterval_s + 0.02 * SheetScene::kSide_m;
+    const double reach = 2 * maxSpeed_m_per_s_ * interval_s() + 0.02 * SheetScene::kSide_m;
     maxSpeed_m_per_s_ = contact_
                             .project(spheres_, points_, static_cast<float>(reach), 0.f, position_,
                                      velocity_, around_)
@@ -165,13 +179,15 @@ class FasciaSheet final : public SheetSolver {
   }
 
   GridLayout layout_;
-  ElasticGrid elastic_;
+  VectorArray rest_;
+  GridTopology topology_;
   PointModel points_;
   ContactResponse response_;
   StepCoefficients coefficients_;
   PointSurroundings around_;
   FleshContact contact_;
-  GridStepper stepper_;
+  std::unique_ptr<SurfaceStepper> stepper_;
+  int intervals_;
   VectorArray position_, velocity_;
   Spheres spheres_;
   double time_s_ = 0, maxSpeed_m_per_s_ = 0;
@@ -182,7 +198,7 @@ class FasciaSheet final : public SheetSolver {
 
 std::unique_ptr<SheetSolver> makeFasciaSheet(const SheetScene& scene,
                                              const FasciaSettings& settings, int& stepsPerFrame) {
-  auto sheet = std::make_unique<FasciaSheet>(scene, settings.stiffness_N_per_m);
+  auto sheet = std::make_unique<FasciaSheet>(scene, settings);
   stepsPerFrame = sheet->stepsPerFrame();
   return sheet;
 }

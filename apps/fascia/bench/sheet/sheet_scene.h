@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <cstddef>
 
 #include <fascia/math/types.h>
 
@@ -35,11 +35,15 @@ class SheetSolver {
 // Medians over frames, of each frame's largest or 99th percentile.
 struct SheetResult {
   double frame_s = 0;
+  double fastFrame_s = 0;             // tenth percentile: what a busy machine does not disturb
   double stretch = 0, stretch99 = 0;  // of the edges along rows and columns: length / rest − 1, ≥ 0
   double penetration_m = 0;
-  bool finite = true;
+  // Points that were not finite or had left the scene when they were looked at: those a skin would
+  // have put back.
+  std::size_t lost = 0;
 
   double realtimeRatio() const { return SheetScene::kFrame_s / frame_s; }
+  double fastRatio() const { return SheetScene::kFrame_s / fastFrame_s; }
 };
 
 SheetResult measureSheet(const SheetScene& scene, SheetSolver& solver, int frames);

@@ -1,8 +1,10 @@
-#include "bench/peers/sheet_scene.h"
+#include "bench/sheet/sheet_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <vector>
 
 namespace fascia {
 namespace {
@@ -14,8 +16,9 @@ constexpr double kFadeIn_s = 1;
 // Frames before anything is measured: the swing is full and periodic by then.
 constexpr int kSheetWarmFrames = 120;
 constexpr int kSheetMeasureEvery = 6;
+constexpr double kFarAway_m = 10;
 
-double median(std::vector<double> values) {
+double medianOfFrames(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -44,13 +47,15 @@ std::vector<double> stretches(const SheetScene& scene, const SheetSolver& solver
 }
 
 double deepest(const SheetScene& scene, const SheetSolver& solver, double time_s) {
+  std::array<Vec3, SheetScene::kSpheres> centers;
+  for (int s = 0; s < SheetScene::kSpheres; ++s)
+    centers[static_cast<std::size_t>(s)] = SheetScene::sphereCenter(s, time_s);
   double depth = 0;
   for (int j = 0; j < scene.side; ++j)
     for (int i = 0; i < scene.side; ++i)
-      for (int s = 0; s < SheetScene::kSpheres; ++s)
-        depth = std::max(depth,
-                         SheetScene::kSphereRadius_m -
-                             (solver.position(i, j) - SheetScene::sphereCenter(s, time_s)).norm());
+      for (const Vec3& center : centers)
+        depth =
+            std::max(depth, SheetScene::kSphereRadius_m - (solver.position(i, j) - center).norm());
   return depth;
 }
 
@@ -78,6 +83,9 @@ Vec3 SheetScene::sphereVelocity(int sphere, double time_s) {
 SheetResult measureSheet(const SheetScene& scene, SheetSolver& solver, int frames) {
   std::vector<double> frame_s, largest, nearlyLargest, depth_m;
   SheetResult result;
+  const auto strays = [&](int i, int j) {
+    return !(solver.position(i, j).cwiseAbs().maxCoeff() < kFarAway_m);
+  };
   for (int f = 0; f < kSheetWarmFrames + frames; ++f) {
     const auto begin = std::chrono::steady_clock::now();
     solver.advanceFrame();
@@ -86,17 +94,20 @@ SheetResult measureSheet(const SheetScene& scene, SheetSolver& solver, int frame
     frame_s.push_back(spent.count());
     if (f % kSheetMeasureEvery != 0) continue;
     std::vector<double> all = stretches(scene, solver);
-    for (const double s : all) result.finite = result.finite && std::isfinite(s);
+    for (int j = 0; j < scene.side; ++j)
+      for (int i = 0; i < scene.side; ++i) result.lost += strays(i, j) ? 1 : 0;
     const auto rank = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(all.size()));
     std::nth_element(all.begin(), all.begin() + rank, all.end());
     nearlyLargest.push_back(all[static_cast<std::size_t>(rank)]);
     largest.push_back(*std::max_element(all.begin(), all.end()));
     depth_m.push_back(deepest(scene, solver, (f + 1) * SheetScene::kFrame_s));
   }
-  result.frame_s = median(frame_s);
-  result.stretch = median(largest);
-  result.stretch99 = median(nearlyLargest);
-  result.penetration_m = median(depth_m);
+  result.frame_s = medianOfFrames(frame_s);
+  std::ranges::sort(frame_s);
+  result.fastFrame_s = frame_s[frame_s.size() / 10];
+  result.stretch = medianOfFrames(largest);
+  result.stretch99 = medianOfFrames(nearlyLargest);
+  result.penetration_m = medianOfFrames(depth_m);
   return result;
 }
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <fascia/field/field.h>
+#include <fascia/skin/point/face_samples.h>
+#include <fascia/skin/point/point_model.h>
+
+namespace fascia {
+
+// The usual clearance, as a share of the skin's size: what lies between samples comes nearer by less.
+constexpr double kFaceClearance = 1e-3;
+
+// Lifts faces off the flesh that comes through them between their points: moves free points out
+// until hardly a sample is nearer to a solid than `clearance_m`, or than its fat where that is
+// less. A function of the positions alone, and a continuous one: it is how a skin is shown, and
+// what is simulated knows nothing of it. (As a part of the simulation it has no state of rest:
+// which of a face's points bears it is left open.)
+void liftFaces(const FaceSamples& faces, const DistanceField& flesh, const PointModel& points,
+               float clearance_m, VectorArray& position);
+
+}  // namespace fascia
