@@ -34,8 +34,7 @@ inline std::shared_ptr<const BodyShape> makeBar(const BasisPtr& basis,
                                                 double density = 1000,
                                                 Crushing crushing = Crushing::free) {
   return std::make_shared<BodyShape>(BodyDef{
-      basis,
-      boxMatter(basis->dimension(), boxOf(size_m), density, MatterDetail::of(basis->degree())),
+      basis, boxMatter(basis->dimension(), boxOf(size_m), density, MatterDetail::of(*basis)),
       material, crushing});
 }
 

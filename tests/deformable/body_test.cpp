@@ -34,7 +34,7 @@ TEST(BodyShape, CoordinatesAreMassNormalised) {
   for (const BasisPtr& basis : test::allBases()) {
     const auto shape = test::makeBar(basis);
     const Matter matter = boxMatter(basis->dimension(), test::boxOf(test::kBarSize_m), 1000,
-                                    MatterDetail::of(basis->degree()));
+                                    MatterDetail::of(*basis));
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(shape->shapeCount(), shape->shapeCount());
     for (std::size_t i = 0; i < matter.mass.size(); ++i) {
       const Eigen::VectorXd s = shape->pointWeights(matter.mass.points_m[i]);

@@ -90,7 +90,7 @@ TEST(Matter, OfABallHasItsInertia) {
 
 TEST(Matter, OfAMeshAndOfTheSameBoxMakeTheSameBody) {
   const BasisPtr basis = makePolynomialBasis(3, 2, test::boxOf(kSize_m));
-  const MatterDetail detail = MatterDetail::of(basis->degree());
+  const MatterDetail detail = MatterDetail::of(*basis);
   const BodyShape box({basis, boxMatter(3, test::boxOf(kSize_m), 500, detail), {}});
   const BodyShape mesh({basis, meshMatter(boxMesh(kSize_m), 500, 0.02, detail), {}});
   EXPECT_NEAR(mesh.mass_kg(), box.mass_kg(), 1e-12);
@@ -118,7 +118,7 @@ TEST(Matter, OutlinesMassIsExactAndTheirEnergyPointsLieInside) {
     return (std::pow(high, n + 1) - std::pow(low, n + 1)) / (n + 1);
   };
   for (const auto& outline : {corners, std::vector<Vec2>(corners.rbegin(), corners.rend())}) {
-    const Matter matter = outlineMatter(outline, 3, {6, 4});
+    const Matter matter = outlineMatter(outline, 3, {6, 4, {{1, 1, 0}, 1}});
     for (int i = 0; i <= 6; ++i) {
       for (int j = 0; i + j <= 6; ++j) {
         const double exact = powers(0, 2, i) * powers(0, 2, j) - powers(1, 2, i) * powers(1, 2, j);
@@ -135,8 +135,8 @@ TEST(Matter, OutlinesMassIsExactAndTheirEnergyPointsLieInside) {
     }
     EXPECT_LE(matter.volume.size(), 15u);  // as many as monomials up to degree 4
   }
-  EXPECT_THROW(outlineMatter(corners, 0, {2, 0}), Error);
-  EXPECT_THROW(outlineMatter(std::span(corners).first(2), 1, {2, 0}), Error);
+  EXPECT_THROW(outlineMatter(corners, 0, MatterDetail::of(1)), Error);
+  EXPECT_THROW(outlineMatter(std::span(corners).first(2), 1, MatterDetail::of(1)), Error);
 }
 
 }  // namespace

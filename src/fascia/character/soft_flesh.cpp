@@ -18,7 +18,7 @@ constexpr int kThinnedDegree = 8;
 
 Matter matterOf(const Solid& solid, const SoftSolidDef& def, const Basis& basis) {
   const double edge_m = std::cbrt(solid.volume_m3());
-  const MatterDetail detail = MatterDetail::of(basis.degree());
+  const MatterDetail detail = MatterDetail::of(basis);
   Matter matter = solidMatter(solid, def.density_kg_per_m3, edge_m / kMassCells, detail);
   if (detail.energy_degree > kThinnedDegree)
     matter.volume = solidMatter(solid, def.density_kg_per_m3, edge_m / kEnergyCells, detail).volume;

@@ -217,7 +217,7 @@ void Stage::addKind(const SceneBodyDef& body, const std::string& pointer,
     Form form = formOf(body, pointer, diagnostics);
     if (!form.basis) return;
     countNumbers(form.basis->size() * form.basis->dimension());
-    const MatterDetail detail = MatterDetail::of(form.basis->degree());
+    const MatterDetail detail = MatterDetail::of(*form.basis);
     const bool implicit = def_.simulation.scheme == "implicit";
     const Crushing crushing = implicit ? Crushing::resisted : Crushing::free;
     shapes_.push_back(std::make_shared<const BodyShape>(

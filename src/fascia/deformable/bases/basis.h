@@ -15,6 +15,12 @@ namespace fascia {
 // The span of p must contain 1 and the coordinates of X, or no body could rest or be moved.
 class Basis {
  public:
+  // Degrees of polynomials along each axis, and of all their terms together at most.
+  struct Degrees {
+    Eigen::Vector3i axes;
+    int total;
+  };
+
   virtual ~Basis() = default;
 
   virtual std::string_view name() const = 0;
@@ -23,6 +29,11 @@ class Basis {
   // Degree of p as polynomials in X: what tells the quadratures how fine to be. Of functions that
   // are no polynomials: the degree of those that approximate them well enough.
   virtual int degree() const = 0;
+  // The same of ∂p/∂X, which energies are made of; 0 of what are no polynomials but piece by piece.
+  virtual Degrees slopeDegrees() const {
+    const int slope = degree() - 1;
+    return {Eigen::Vector3i::Constant(slope), slope};
+  }
 
   // p(X); `p` has size() entries, X is in metres, in the undeformed body.
   virtual void values(const Vec3& X, Eigen::Ref<Eigen::VectorXd> p) const = 0;

@@ -37,6 +37,7 @@ class BernsteinBasis final : public Basis {
   int dimension() const override { return dimension_; }
   int size() const override { return (cells_.array() + 1).prod(); }
   int degree() const override { return cells_.sum(); }
+  Degrees slopeDegrees() const override { return {cells_, degree() - 1}; }
 
   void values(const Vec3& X, Eigen::Ref<Eigen::VectorXd> p) const override {
     const std::array<Bernstein, 3> b = factorsAt(X);

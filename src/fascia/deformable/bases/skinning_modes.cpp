@@ -143,6 +143,7 @@ class SkinningModesBasis final : public Basis {
   // Along an axis there are about two functions for each mode: as many as of polynomials of this
   // degree, which so tells them apart.
   int degree() const override { return std::max(dimension_, 2 * modes_ - 1); }
+  Degrees slopeDegrees() const override { return {Eigen::Vector3i::Zero(), 0}; }
 
   void values(const Vec3& X, Eigen::Ref<Eigen::VectorXd> p) const override {
     const Weights w = weightsAt(X);

@@ -6,6 +6,7 @@
 
 #include <fascia/base/assert.h>
 #include <fascia/base/error.h>
+#include <fascia/deformable/body/energy_kernels.h>
 
 namespace fascia {
 namespace {
@@ -14,6 +15,8 @@ namespace {
 constexpr double kMassTolerance = 1e-13;
 // The undeformed body is represented to rounding, or the basis lacks the linear functions.
 constexpr double kRestTolerance = 1e-7;
+// From here on sums over energy points are worth their kernels. The paper's bodies have ten.
+constexpr int kManyFunctions = 12;
 
 void check(const BodyMaterial& material) {
   Diagnostics diagnostics;
@@ -111,6 +114,8 @@ void BodyShape::prepareEnergy(const BodyDef& def) {
       for (Eigen::Index axis = 0; axis < dimension_; ++axis) slopes_.push_back(ds(j, axis));
     volumes_.push_back(count == 1 ? volume_m3_ : volume.weights[i]);
   }
+  if (shapeCount_ >= kManyFunctions)
+    table_ = std::make_shared<SlopeTable>(shapeCount_, dimension_, slopes_);
 }
 
 Eigen::VectorXd BodyShape::pointWeights(const Vec3& X) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include <fascia/deformable/matter/strain_energy.h>
 
 namespace fascia {
+
+struct SlopeTable;
 
 struct BodyDef {
   BasisPtr basis;
@@ -84,6 +87,9 @@ class BodyShape {
   void factorMass(const BodyDef& def);
   void findRest(const BodyDef& def);
   void prepareEnergy(const BodyDef& def);
+  template <int D>
+  struct Sums;  // over energy points
+  bool hasManyFunctions() const { return table_ != nullptr; }
   const double* slopes(std::size_t point) const {
     return slopes_.data() + point * static_cast<std::size_t>(shapeCount_ * dimension_);
   }
@@ -99,6 +105,7 @@ class BodyShape {
   Eigen::VectorXd momentumWeights_;  // k
   std::vector<double> volumes_;      // per energy point
   std::vector<double> slopes_;       // per energy point: ∂s/∂X, k × dimension, row by row
+  std::shared_ptr<const SlopeTable> table_;  // the same, of bodies of many functions
 };
 
 }  // namespace fascia

@@ -4,6 +4,7 @@
 #include <fascia/deformable/body/body.h>
 
 #include <fascia/base/assert.h>
+#include <fascia/deformable/body/energy_kernels.h>
 
 // The sums over energy points. A body in the plane is one of unit thickness that does not stretch
 // across: F has F_zz = 1, and the densities' values are those of two dimensions.
@@ -57,20 +58,106 @@ auto withDimension(int dimension, Visit&& visit) {
                         : visit(std::integral_constant<int, 3>{});
 }
 
-template <int D>
-Mat3 deformationAt(const double* q, const double* slopes, int shapeCount) {
-  Mat3 F = gradientAt<D>(q, slopes, shapeCount);
-  if (D == 2) F(2, 2) = 1;
-  return F;
+// What sums over the energy points of bodies of many functions need; one for each thread.
+struct Room {
+  DoubleArray F, rate, stresses, stiffnesses, blocks;
+};
+Room& room() {
+  static thread_local Room mine;
+  return mine;
 }
 
 }  // namespace
 
+// Sums by the kernels, or point by point where there are few functions.
+template <int D>
+struct BodyShape::Sums {
+  const BodyShape& body;
+
+  // visit(point, F) of all energy points.
+  template <class Visit>
+  void forEachPoint(std::span<const double> q, Visit&& visit) const {
+    DoubleArray& F = room().F;
+    if (body.hasManyFunctions()) sumAll(q, F);
+    for (std::size_t i = 0; i < body.volumes_.size(); ++i) visit(i, deformed(gradient(q, F, i)));
+  }
+  // visit(point, F, Ḟ), likewise.
+  template <class Visit>
+  void forEachPoint(std::span<const double> q, std::span<const double> v, Visit&& visit) const {
+    DoubleArray &F = room().F, &rate = room().rate;
+    if (body.hasManyFunctions()) sumAll(q, F), sumAll(v, rate);
+    for (std::size_t i = 0; i < body.volumes_.size(); ++i)
+      visit(i, deformed(gradient(q, F, i)), gradient(v, rate, i));
+  }
+
+  // force −= factor volume P ∂s/∂X of one point; finish() has to follow the last one.
+  void addStress(std::size_t point, const Mat3& P, double factor, std::span<double> force) const {
+    if (!body.hasManyFunctions()) {
+      addStressForce<D>(P, body.slopes(point), body.shapeCount_, -factor * body.volumes_[point],
+                        force.data());
+      return;
+    }
+    DoubleArray& all = room().stresses;
+    if (point == 0) all.assign(body.table_->tensorSize(), 0);
+    for (int axis = 0; axis < D; ++axis)
+      for (int row = 0; row < D; ++row)
+        all[place(axis * D + row, point)] = -factor * body.volumes_[point] * P(row, axis);
+  }
+  void finish(std::span<double> force) const {
+    if (body.hasManyFunctions())
+      addStressForces(*body.table_, room().stresses.data(), force.data());
+  }
+
+  // The same of H += factor volume Bᵀ K B.
+  void addStiffness(std::size_t point, const Mat9& K, double factor,
+                    Eigen::Ref<Eigen::MatrixXd> H) const {
+    if (!body.hasManyFunctions()) {
+      addCongruence<D>(K, body.slopes(point), body.shapeCount_, factor * body.volumes_[point], H);
+      return;
+    }
+    constexpr std::size_t kStride = SlopeTable::tensorStride(D);
+    DoubleArray& all = room().stiffnesses;
+    if (point == 0) all.assign(body.volumes_.size() * D * kStride, 0);
+    double* to = all.data() + point * D * kStride;
+    const double weight = factor * body.volumes_[point];
+    for (int beta = 0; beta < D; ++beta, to += kStride)
+      for (int alpha = 0, n = 0; alpha < D; ++alpha)
+        for (int r = 0; r < D; ++r)
+          for (int s = 0; s < D; ++s) to[n++] = weight * K(3 * alpha + r, 3 * beta + s);
+  }
+  void finish(Eigen::Ref<Eigen::MatrixXd> H) const {
+    if (!body.hasManyFunctions()) return;
+    addCongruences(*body.table_, room().stiffnesses.data(), H.data(),
+                   static_cast<std::size_t>(H.outerStride()), room().blocks);
+  }
+
+ private:
+  void sumAll(std::span<const double> q, DoubleArray& tensors) const {
+    tensors.resize(body.table_->tensorSize());
+    sumGradients(*body.table_, q.data(), tensors.data());
+  }
+  std::size_t place(std::size_t number, std::size_t point) const {
+    return number * body.table_->pointStride + point;
+  }
+  Mat3 gradient(std::span<const double> q, const DoubleArray& tensors, std::size_t point) const {
+    if (!body.hasManyFunctions())
+      return gradientAt<D>(q.data(), body.slopes(point), body.shapeCount_);
+    Mat3 F = Mat3::Zero();
+    for (int axis = 0; axis < D; ++axis)
+      for (int row = 0; row < D; ++row) F(row, axis) = tensors[place(axis * D + row, point)];
+    return F;
+  }
+  static Mat3 deformed(Mat3 F) {
+    if (D == 2) F(2, 2) = 1;
+    return F;
+  }
+};
+
 double BodyShape::leastGrowth(std::span<const double> q) const {
   return withDimension(dimension_, [&](auto d) {
     double least = volumes_.empty() ? 1 : std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < volumes_.size(); ++i)
-      least = std::min(least, deformationAt<d()>(q.data(), slopes(i), shapeCount_).determinant());
+    Sums<d()>{*this}.forEachPoint(
+        q, [&](std::size_t, const Mat3& F) { least = std::min(least, F.determinant()); });
     return least;
   });
 }
@@ -78,10 +165,10 @@ double BodyShape::leastGrowth(std::span<const double> q) const {
 double BodyShape::meanGrowth(std::span<const double> q) const {
   return withDimension(dimension_, [&](auto d) {
     double sum = 0, whole = 0;
-    for (std::size_t i = 0; i < volumes_.size(); ++i) {
-      sum += volumes_[i] * deformationAt<d()>(q.data(), slopes(i), shapeCount_).determinant();
+    Sums<d()>{*this}.forEachPoint(q, [&](std::size_t i, const Mat3& F) {
+      sum += volumes_[i] * F.determinant();
       whole += volumes_[i];
-    }
+    });
     return whole > 0 ? sum / whole : 1;
   });
 }
@@ -91,10 +178,9 @@ double BodyShape::energy(std::span<const double> q) const {
                 "the coordinates are of this body");
   return withDimension(dimension_, [&](auto d) {
     double sum = 0;
-    for (std::size_t i = 0; i < volumes_.size(); ++i)
-      sum += volumes_[i] * strainEnergyDensity(material_,
-                                               deformationAt<d()>(q.data(), slopes(i), shapeCount_),
-                                               crushing_);
+    Sums<d()>{*this}.forEachPoint(q, [&](std::size_t i, const Mat3& F) {
+      sum += volumes_[i] * strainEnergyDensity(material_, F, crushing_);
+    });
     return sum;
   });
 }
@@ -103,11 +189,11 @@ void BodyShape::addElasticForce(std::span<const double> q, std::span<double> for
   FASCIA_ASSERT(q.size() == static_cast<std::size_t>(coordinateCount()) && force.size() == q.size(),
                 "the coordinates are of this body");
   withDimension(dimension_, [&](auto d) {
-    for (std::size_t i = 0; i < volumes_.size(); ++i) {
-      const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-      addStressForce<d()>(strainStress(material_, F, crushing_), slopes(i), shapeCount_,
-                          -volumes_[i], force.data());
-    }
+    const Sums<d()> sums{*this};
+    sums.forEachPoint(q, [&](std::size_t i, const Mat3& F) {
+      sums.addStress(i, strainStress(material_, F, crushing_), 1, force);
+    });
+    sums.finish(force);
   });
 }
 
@@ -117,11 +203,11 @@ void BodyShape::addStiffness(std::span<const double> q, double factor, Curvature
                     q.size() == static_cast<std::size_t>(H.rows()),
                 "the matrix is of this body");
   withDimension(dimension_, [&](auto d) {
-    for (std::size_t i = 0; i < volumes_.size(); ++i) {
-      const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-      addCongruence<d()>(strainStiffness(material_, F, curvature, crushing_), slopes(i),
-                         shapeCount_, factor * volumes_[i], H);
-    }
+    const Sums<d()> sums{*this};
+    sums.forEachPoint(q, [&](std::size_t i, const Mat3& F) {
+      sums.addStiffness(i, strainStiffness(material_, F, curvature, crushing_), factor, H);
+    });
+    sums.finish(H);
   });
 }
 
@@ -139,27 +225,24 @@ void BodyShape::addDampingForce(std::span<const double> q, std::span<const doubl
   const Eigen::Map<const Eigen::VectorXd> v(velocity.data(), n);
   f -= material_.drag_per_s * v;
   withDimension(dimension_, [&](auto d) {
+    const Sums<d()> sums{*this};
     if (material_.relaxation_s > 0) {
-      for (std::size_t i = 0; i < volumes_.size(); ++i) {
-        const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-        const Mat3 rate = gradientAt<d()>(velocity.data(), slopes(i), shapeCount_);
-        addStressForce<d()>(relaxationStress(material_, F, rate), slopes(i), shapeCount_,
-                            -volumes_[i], force.data());
-      }
+      sums.forEachPoint(q, velocity, [&](std::size_t i, const Mat3& F, const Mat3& rate) {
+        sums.addStress(i, relaxationStress(material_, F, rate), 1, force);
+      });
+      sums.finish(force);
     }
     if (material_.power_damping_s_per_J <= 0) return;
     // Power by power: V̇ = ∂V/∂q · q̇, then −k_d V̇ ∂V/∂q, in two passes to need no memory.
     double power = 0;
-    for (std::size_t i = 0; i < volumes_.size(); ++i) {
-      const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-      const Mat3 rate = gradientAt<d()>(velocity.data(), slopes(i), shapeCount_);
+    sums.forEachPoint(q, velocity, [&](std::size_t i, const Mat3& F, const Mat3& rate) {
       power += volumes_[i] * strainStress(material_, F, crushing_).cwiseProduct(rate).sum();
-    }
-    for (std::size_t i = 0; i < volumes_.size(); ++i) {
-      const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-      addStressForce<d()>(strainStress(material_, F, crushing_), slopes(i), shapeCount_,
-                          -material_.power_damping_s_per_J * power * volumes_[i], force.data());
-    }
+    });
+    sums.forEachPoint(q, [&](std::size_t i, const Mat3& F) {
+      sums.addStress(i, strainStress(material_, F, crushing_),
+                     material_.power_damping_s_per_J * power, force);
+    });
+    sums.finish(force);
   });
 }
 
@@ -170,13 +253,12 @@ void BodyShape::addDampingMatrix(std::span<const double> q, double factor,
                 "the matrix is of this body");
   D.diagonal().array() += factor * material_.drag_per_s;
   withDimension(dimension_, [&](auto d) {
-    if (material_.relaxation_s > 0) {
-      for (std::size_t i = 0; i < volumes_.size(); ++i) {
-        const Mat3 F = deformationAt<d()>(q.data(), slopes(i), shapeCount_);
-        addCongruence<d()>(relaxationViscosity(material_, F), slopes(i), shapeCount_,
-                           factor * volumes_[i], D);
-      }
-    }
+    if (material_.relaxation_s <= 0) return;
+    const Sums<d()> sums{*this};
+    sums.forEachPoint(q, [&](std::size_t i, const Mat3& F) {
+      sums.addStiffness(i, relaxationViscosity(material_, F), factor, D);
+    });
+    sums.finish(D);
   });
   if (material_.power_damping_s_per_J <= 0) return;
   Eigen::Map<Eigen::VectorXd> gradient(scratch.data(), coordinateCount());

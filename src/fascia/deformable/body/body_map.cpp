@@ -29,6 +29,21 @@ constexpr std::size_t kMostSurfacePoints = 600;  // each costs in every set(), a
 using ShapeBuffer = std::array<double, BodyMap::kMaxShapes>;
 using GradientBuffer = std::array<double, 3 * BodyMap::kMaxShapes>;
 
+// x = R p of all samples; values: p at each. Coordinates beyond D stay.
+template <int D>
+void moveSamples(const Eigen::MatrixXd& R, const Eigen::MatrixXd& values,
+                 const std::vector<Vec3>& samples_m, std::vector<Vec3>& out_m) {
+  const Eigen::Index count = values.rows();
+  for (std::size_t i = 0; i < out_m.size(); ++i) {
+    const double *value = values.col(static_cast<Eigen::Index>(i)).data(), *column = R.data();
+    std::array<double, D> x{};
+    for (Eigen::Index j = 0; j < count; ++j, column += D)
+      for (std::size_t row = 0; row < D; ++row) x[row] += value[j] * column[row];
+    out_m[i] = samples_m[i];
+    for (std::size_t row = 0; row < D; ++row) out_m[i][static_cast<Eigen::Index>(row)] = x[row];
+  }
+}
+
 }  // namespace
 
 BodyMap::BodyMap(BodyShapePtr shape, const Box& domain_m, const TriangleMesh& surface) {
@@ -85,14 +100,9 @@ void BodyMap::set(std::span<const double> q, std::span<const double> v) {
   center_ = at(center_m());
   const Tangent rate = tangentOf(rate_, center_m(), true);
   centerVelocity_m_per_s_ = rate.x_m, centerRate_per_s_ = rate.gradient;
-  for (std::size_t i = 0; i < deformed_m_.size(); ++i) {
-    Vec3& x = deformed_m_[i];
-    x = constant_->samples_m[i];
-    x.head(constant_->dimension).setZero();
-    for (Eigen::Index j = 0; j < constant_->shapeCount; ++j)
-      x.head(constant_->dimension) +=
-          constant_->sampleValues(j, static_cast<Eigen::Index>(i)) * R_.col(j);
-  }
+  constant_->dimension == 2
+      ? moveSamples<2>(R_, constant_->sampleValues, constant_->samples_m, deformed_m_)
+      : moveSamples<3>(R_, constant_->sampleValues, constant_->samples_m, deformed_m_);
   measure();
 }
 

@@ -3,6 +3,23 @@
 #include <fascia/deformable/matter/strain_energy.h>
 
 namespace fascia {
+namespace {
+
+// From here on Eigen takes products of R for those of large matrices, which take long to begin.
+constexpr Eigen::Index kFunctionsOfLargeBodies = 12;
+
+// x = R p, F = R ∂p/∂X in three dimensions.
+void carryPoint(const Eigen::MatrixXd& R, const double* p, const double* slopes, Vec3& x, Mat3& F) {
+  const Eigen::Index count = R.cols();
+  x.setZero(), F.setZero();
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Vec3 column = R.col(j);
+    x += p[j] * column;
+    for (int axis = 0; axis < 3; ++axis) F.col(axis) += slopes[axis * count + j] * column;
+  }
+}
+
+}  // namespace
 
 CarriedMesh::CarriedMesh(const BodyShape& shape, TriangleMesh undeformed)
     : shape_(&shape), undeformed_(std::move(undeformed)) {
@@ -28,9 +45,13 @@ void CarriedMesh::carry(std::span<const double> q, TriangleMesh& out) const {
   for (std::size_t i = 0; i < count; ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     Vec3 x = undeformed_.positions[i].cast<double>();
-    x.head(d).noalias() = R * values_.col(column);
     Mat3 F = Mat3::Identity();
-    F.topLeftCorner(d, d).noalias() = R * gradients_.middleCols(3 * column, d);
+    if (d == 3 && R.cols() >= kFunctionsOfLargeBodies) {
+      carryPoint(R, values_.col(column).data(), gradients_.col(3 * column).data(), x, F);
+    } else {
+      x.head(d).noalias() = R * values_.col(column);
+      F.topLeftCorner(d, d).noalias() = R * gradients_.middleCols(3 * column, d);
+    }
     const Vec3 normal = cofactors(F) * undeformed_.normals[i].cast<double>();
     const double length = normal.norm();
     out.positions[i] = x.cast<float>();

@@ -103,8 +103,15 @@ void BodyContacts::refresh() {
 
 ContactSet& BodyContacts::find(const Step& step) {
   refresh();
-  if (settings_.bodies_collide) field_.update(step.q, step.v);
   obstacles_.update(step.h_s + step.lead_s);
+  const auto hasSurface = [](const Body& body) { return body.surface != nullptr; };
+  const bool meet = settings_.bodies_collide && std::ranges::count_if(bodies_, hasSurface) > 1;
+  if (!meet && !settings_.ground_m && obstacles_.parts().empty()) {
+    set_.clear();
+    set_.finish();
+    return set_;
+  }
+  if (settings_.bodies_collide) field_.update(step.q, step.v);
   search_->find(step, field_, set_);
   return set_;
 }

@@ -24,10 +24,14 @@ Quadrature scaled(Quadrature rule, double factor) {
   return rule;
 }
 
-// Few points make fast bodies; no more are needed than the energy's polynomials.
-Quadrature reducedVolume(const Quadrature& rule, int dimension, int degree) {
-  constexpr int kMaxReducedDegree = 8;
-  return degree <= kMaxReducedDegree ? reducedQuadrature(rule, dimension, degree) : rule;
+// Few points make fast bodies; no more are needed than the energy's polynomials. Of high degrees
+// there are too many for that: 969 of degree 16.
+constexpr int kMostExactDegree = 8;
+
+Quadrature reducedVolume(const Quadrature& rule, int dimension, const MatterDetail& detail) {
+  return detail.energy_degree <= kMostExactDegree
+             ? reducedQuadrature(rule, dimension, detail.energy_degree)
+             : fittedQuadrature(rule, dimension, detail.slopes);
 }
 
 }  // namespace
@@ -54,8 +58,11 @@ Matter pointMatter(std::span<const Vec3> points_m, std::span<const double> masse
 Matter boxMatter(int dimension, const Box& box, double density_kg_per_m3, MatterDetail detail) {
   checkPositive("density_kg_per_m3", density_kg_per_m3);
   for (int axis = 0; axis < dimension; ++axis) checkPositive("edge (m)", box.size()[axis]);
+  const Quadrature rule = boxQuadrature(dimension, box, detail.energy_degree);
   return {scaled(boxQuadrature(dimension, box, detail.mass_degree), density_kg_per_m3),
-          boxQuadrature(dimension, box, detail.energy_degree)};
+          detail.energy_degree <= kMostExactDegree
+              ? rule
+              : fittedQuadrature(rule, dimension, detail.slopes)};
 }
 
 Matter outlineMatter(std::span<const Vec2> outline_m, double density_kg_per_m2,
@@ -63,8 +70,7 @@ Matter outlineMatter(std::span<const Vec2> outline_m, double density_kg_per_m2,
   checkPositive("density_kg_per_m2", density_kg_per_m2);
   checkSimplePolygon(outline_m);
   return {scaled(polygonQuadrature(outline_m, detail.mass_degree), density_kg_per_m2),
-          reducedVolume(triangulatedQuadrature(outline_m, detail.energy_degree), 2,
-                        detail.energy_degree)};
+          reducedVolume(triangulatedQuadrature(outline_m, detail.energy_degree), 2, detail)};
 }
 
 Matter meshMatter(const TriangleMesh& mesh, double density_kg_per_m3, double cell_m,
@@ -77,7 +83,7 @@ Matter meshMatter(const TriangleMesh& mesh, double density_kg_per_m3, double cel
                 matter.mass.total());
   const Quadrature samples = sampledMeshQuadrature(mesh, cell_m, detail.energy_degree);
   checkPositive("volume found in columns of cell_m (m3)", samples.total());
-  matter.volume = reducedVolume(samples, 3, detail.energy_degree);
+  matter.volume = reducedVolume(samples, 3, detail);
   // The samples' volume is off by what the columns miss; the exact one is known.
   const double exact_m3 = matter.mass.total() / density_kg_per_m3;
   matter.volume = scaled(matter.volume, exact_m3 / samples.total());
@@ -113,7 +119,7 @@ Matter solidMatter(const Solid& solid, double density_kg_per_m3, double cell_m,
     }
   }
   checkPositive("volume found in cells of cell_m (m3)", samples.total());
-  return {scaled(samples, density_kg_per_m3), reducedVolume(samples, 3, detail.energy_degree)};
+  return {scaled(samples, density_kg_per_m3), reducedVolume(samples, 3, detail)};
 }
 
 }  // namespace fascia

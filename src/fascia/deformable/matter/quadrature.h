@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include <fascia/deformable/bases/basis.h>
 #include <fascia/geometry/triangle_mesh.h>
 #include <fascia/math/types.h>
 
@@ -50,5 +51,12 @@ Quadrature sampledMeshQuadrature(const TriangleMesh& mesh, double cell_m, int de
 // polynomials, taken from the given ones, all weights positive if the given were (Carathéodory and
 // Tchakaloff; Piazzon, Sommariva & Vianello 2017, "Caratheodory–Tchakaloff subsampling").
 Quadrature reducedQuadrature(const Quadrature& rule, int dimension, int degree);
+
+// Far fewer points for products of functions of these degrees: places and weights are fitted, so
+// that moments of `rule` stay. Products of three are integrated to some thousandths of the whole,
+// products of four nearly so; where `rule` is not symmetric and there are many, at least those of
+// two. All weights are positive, all points within the box around those of `rule`. Takes up to
+// seconds; gives `rule` back if it has few points, or no fit is found.
+Quadrature fittedQuadrature(const Quadrature& rule, int dimension, const Basis::Degrees& degrees);
 
 }  // namespace fascia

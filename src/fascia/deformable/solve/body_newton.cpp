@@ -22,6 +22,10 @@ constexpr std::size_t kEquationsPerTask = 16;
 // last.
 constexpr double kNearEnough = 1e-3;
 
+// A factorisation is kept while corrections shrink to this part at least. Larger: more iterations,
+// each cheaper by what a factorisation takes.
+constexpr double kGoodShrink = 0.1;
+
 Eigen::Map<const Eigen::VectorXd> vectorOf(std::span<const double> x) {
   return {x.data(), static_cast<Eigen::Index>(x.size())};
 }
@@ -82,6 +86,8 @@ BodyNewton::Result BodyNewton::solve(const OdeState& from, double h_s, double le
   refresh();
   constantForces_ = system_.constantForces();
   guess(from, h_s, to.t_s);
+  for (Work& work : work_) work.factored = false, work.correction = HUGE_VAL;
+  lastMerit_.reset();
   findContacts(from, h_s, lead_s);
   Result result;
   const double tolerance = contacts_ ? options_.contact_tolerance : options_.tolerance;
@@ -178,7 +184,18 @@ void BodyNewton::linearize(BodyId body, const OdeState& from, double h_s) {
   }
   if (system_.damped()) work.residual.noalias() += work.damping * way / h_s;
   if (contacts_) contacts_->addGradient(body, work.residual);
-  work.sound = work.residual.allFinite() && factor(body, from, h_s);
+  work.sound = work.residual.allFinite();
+  if (!work.sound) return;
+  if (mayKeep(work))
+    respondToResidual(work);
+  else
+    work.sound = work.factored = factor(body, from, h_s);
+}
+
+// Contacts change A more than shapes do.
+bool BodyNewton::mayKeep(const Work& work) const {
+  return work.factored && !contacts_ && work.residual.size() >= kManyCoordinates &&
+         work.correction <= kGoodShrink * work.correctionBefore;
 }
 
 // A, its factorisation, and what the constraints' points answer to unit forces. Where A is not
@@ -223,6 +240,24 @@ void BodyNewton::respond(Work& work) const {
     double* target = work.atTerms.data() + static_cast<Eigen::Index>(a) * d * columns;
     for (Eigen::Index j = 0; j < shapes; ++j) {
       addScaledRow(s[j], work.response.data() + j * d * columns, target, d * columns);
+    }
+  }
+}
+
+// respond() with the factorisation of an earlier iteration.
+void BodyNewton::respondToResidual(Work& work) const {
+  const int d = system_.model().dimension();
+  work.force = work.residual;
+  choleskySolveInPlace(work.matrix, work.force);
+  work.response.col(0) = work.force;
+  for (std::size_t a = 0; a < work.terms.size(); ++a) {
+    const double* s =
+        constraints_.weights(constraints_.terms()[static_cast<std::size_t>(work.terms[a])]);
+    for (int row = 0; row < d; ++row) {
+      double sum = 0;
+      for (Eigen::Index j = 0; j < work.force.size() / d; ++j)
+        sum += s[j] * work.force[j * d + row];
+      work.atTerms(static_cast<Eigen::Index>(a) * d + row, 0) = sum;
     }
   }
 }
@@ -302,8 +337,9 @@ void BodyNewton::measure(BodyId body) {
   const BodyModel& model = system_.model();
   const BodyShape& shape = model.shape(body);
   const auto correction = vectorOf(model.part(body, std::span<const double>(correction_)));
-  work_[body.index()].correction =
-      correction.norm() / (shape.size_m() * std::sqrt(shape.mass_kg()));
+  Work& work = work_[body.index()];
+  work.correctionBefore = work.correction;
+  work.correction = correction.norm() / (shape.size_m() * std::sqrt(shape.mass_kg()));
 }
 
 // Δ += δ. Implicit Euler's step is the minimum of a merit (Martin et al. 2011, eq. 5): where all is
@@ -315,13 +351,19 @@ void BodyNewton::applyCorrections(const OdeState& from, double h_s, double t_s) 
   if (contacts_) contacts_->setDirection(correction_);
   // A single iteration is a linearly implicit step: there is nothing to compare it with.
   if (!conserving_ && constraints_.hasConstantJacobian() && options_.max_iterations > 1) {
-    const double before = merit(from, h_s, t_s, 0);
+    const double before = lastMerit_ ? *lastMerit_ : merit(from, h_s, t_s, 0);
+    lastMerit_.reset();
     // The sum's rounding must not stop the last iterations.
     const double allowed = before + 1e-12 * std::abs(before);
     for (int halving = 0; halving < kMaxHalvings; ++halving) {
-      if (merit(from, h_s, t_s, step) <= allowed) break;
+      const double next = merit(from, h_s, t_s, step);
+      // Soft constraints and contacts may round otherwise once the way is longer.
+      if (next <= allowed && !contacts_ && constraints_.size() == hardCount_) lastMerit_ = next;
+      if (next <= allowed) break;
       step *= 0.5;
     }
+    if (step < 1)
+      for (Work& work : work_) work.factored = false;
   }
   if (contacts_) contacts_->setStep(step);
   for (std::size_t i = 0; i < way_.size(); ++i) way_[i] += step * correction_[i];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <fascia/deformable/contact/body_contact.h>
@@ -15,7 +16,9 @@ namespace fascia {
 //     (J A⁻¹ Jᵀ + 1/K) λ = −c + J A⁻¹ residual
 // with a compliance 1/K where a constraint is soft. A changes with the bodies' shapes, so this
 // matrix is factored in every iteration; its pattern and the order of elimination stay. Contacts
-// add to A; those between bodies also couple them, which conjugate gradients see to.
+// add to A; those between bodies also couple them, which conjugate gradients see to. Without
+// contacts large bodies keep the factorisation of an iteration for those after it, as long as
+// corrections shrink well.
 class BodyNewton {
  public:
   BodyNewton(BodySystem& system, const BodyStepperOptions& options);
@@ -43,7 +46,10 @@ class BodyNewton {
     RowMatrix atTerms;
     Eigen::VectorXd residual, q, force;  // n
     std::vector<int> terms;              // numbers in constraints_
-    double merit_J = 0, correction = 0;  // part of the merit; |δ| relative to the body's size
+    double merit_J = 0;                  // part of the merit
+    double correction = 0;               // |δ| relative to the body's size
+    double correctionBefore = 0;         // that of the iteration before
+    bool factored = false;               // matrix, in this step
     bool sound = true;
   };
 
@@ -55,6 +61,8 @@ class BodyNewton {
   void moveTo(BodyId body, const OdeState& from, double place);
   bool factor(BodyId body, const OdeState& from, double h_s);
   void respond(Work& work) const;
+  bool mayKeep(const Work& work) const;
+  void respondToResidual(Work& work) const;
   bool solveConstraints(double h_s);
   Vec3 wanted(std::size_t constraint, double h_s) const;
   void correct(BodyId body);
@@ -84,6 +92,7 @@ class BodyNewton {
   std::span<const double> constantForces_;
   std::vector<Vec3> lambda_, startValue_, endValue_;  // of all constraints
   ContactSet* contacts_ = nullptr;                    // of this step, if there are any
+  std::optional<double> lastMerit_;                   // where the way is, if it is known
   // Of the conjugate gradients: ρ, z, p, A p but for the coupling, and with it.
   std::vector<double> cgResidual_, cgAnswer_, cgDirection_, cgImage_, cgProduct_;
 };

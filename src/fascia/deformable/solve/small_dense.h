@@ -4,15 +4,21 @@
 
 #include <Eigen/Core>
 
+#include <fascia/deformable/solve/dense_kernels.h>
+
 // Cholesky's factorisation for the matrices of single bodies, 12 to some 100 rows. Eigen's own is
 // made for larger ones: its blocks and packing take longer than the arithmetic here.
 namespace fascia {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// Bodies of so many coordinates, which are larger than the paper's, spend their time in matrices.
+inline constexpr Eigen::Index kManyCoordinates = 36;
+
 // A = L Lᵀ in place: reads and writes the lower triangle. False if A is not positive.
 [[nodiscard]] inline bool choleskyInPlace(Eigen::MatrixXd& A) {
   const Eigen::Index n = A.rows();
+  if (n >= kManyCoordinates) return factorDense(A.data(), static_cast<std::size_t>(n));
   for (Eigen::Index j = 0; j < n; ++j) {
     double* column = A.data() + j * n;
     if (!(column[j] > 0)) return false;
@@ -52,6 +58,17 @@ inline void choleskySolveInPlace(const Eigen::MatrixXd& L, RowMatrix& X) {
     for (Eigen::Index i = j + 1; i < n; ++i) addScaledRow(-L(i, j), row(i), row(j), columns);
     X.row(j) *= 1 / L(j, j);
   }
+}
+
+// The same of one right side.
+inline void choleskySolveInPlace(const Eigen::MatrixXd& L, Eigen::VectorXd& x) {
+  const Eigen::Index n = L.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    x[j] /= L(j, j);
+    x.tail(n - 1 - j) -= x[j] * L.col(j).tail(n - 1 - j);
+  }
+  for (Eigen::Index j = n; j-- > 0;)
+    x[j] = (x[j] - L.col(j).tail(n - 1 - j).dot(x.tail(n - 1 - j))) / L(j, j);
 }
 
 }  // namespace fascia
