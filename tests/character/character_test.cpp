@@ -83,6 +83,57 @@ TEST(Character, SettlesBeforeItStarts) {
   EXPECT_LT(state.skin.maxSpeed_m_per_s, 0.02f);
 }
 
+// The hip goes at a constant speed, from the first moment on.
+class Gliding final : public PostureSource {
+ public:
+  Gliding(const Skeleton& skeleton, double speed_m_per_s)
+      : rest_(skeleton.restPosture()), speed_m_per_s_(speed_m_per_s) {}
+  void sample(double time_s, PostureSample& out) const override {
+    out.posture = rest_;
+    out.posture.values[0] = speed_m_per_s_ * time_s, out.posture.rates[0] = speed_m_per_s_;
+    out.parameters.clear();
+  }
+
+ private:
+  Posture rest_;
+  double speed_m_per_s_;
+};
+
+// How far the skin is behind a skin that stands, beside a hip that has gone 1 m/s for a frame.
+double lag_m(const CharacterDef& def) {
+  const Character character(def);
+  constexpr double kFrame_s = 1.0 / 60;
+  SkinStats stats;
+  CharacterState state[2];
+  for (int moving = 0; moving < 2; ++moving) {
+    const Gliding source(character.skeleton(), moving);
+    state[moving] = initialState(character, source);
+    advance(character, source, kFrame_s, state[moving], stats);
+  }
+  const double way_m = state[1].skeleton.joint_world[0].translation_m.x() -
+                       state[0].skeleton.joint_world[0].translation_m.x();
+  EXPECT_NEAR(way_m, kFrame_s, 1e-3);
+  const GridLayout& g = character.skin()->grid()->layout();
+  double sum = 0;
+  for (int j = 0; j < g.rows; ++j)
+    for (int i = 0; i < g.columns; ++i)
+      sum += state[0].skin.position.x[g.at(i, j)] + way_m - state[1].skin.position.x[g.at(i, j)];
+  return sum / (g.rows * g.columns);
+}
+
+// A motion that starts moving takes its skin along, whatever steps it.
+TEST(Character, HasASkinThatStartsWithTheVelocityOfWhatCarriesIt) {
+  for (const char* integrator : {"auto", "leapfrog", "rk4", "verlet"}) {
+    for (const double settle_s : {0.0, 0.1}) {
+      CharacterDef def = test::smallCharacter();
+      def.simulation.integrator = integrator;
+      def.simulation.settle_s = settle_s;
+      EXPECT_LT(std::abs(lag_m(def)), 5e-4) << integrator << " " << settle_s;
+    }
+  }
+  EXPECT_LT(std::abs(lag_m(test::fineCharacter(128))), 5e-4);  // rides on a coarse grid
+}
+
 TEST(Character, OfFrozenPostureComesToTheSameRestWithAnyFrameRate) {
   CharacterDef def = test::smallCharacter();
   def.simulation.settle_s = 0;

@@ -158,7 +158,7 @@ inline Worst simulate(const Character& character, int motion, double frame_s, in
     measureSkin(*character.skin(), {&state.flesh, state.skeleton.joint_world}, state.skin,
                 worst.stats);
     worst.longestEdge = std::max(worst.longestEdge, longestEdge(*character.skin(), state.skin));
-    worst.lastStretch = character.skin()->grid()->elastic().maxStretch(state.skin.position);
+    worst.lastStretch = character.skin()->topology().maxStretch(state.skin.position);
     worst.stretch = std::max(worst.stretch, worst.lastStretch);
   }
   worst.penetration_m = worst.stats.max_penetration_m;

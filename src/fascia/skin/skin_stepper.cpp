@@ -133,6 +133,11 @@ void SkinStepper::begin(const SkinPose& pose, SkinState& state) {
   placer_->placeAnchors(pose, state.surroundings.anchor);
   SkinStats ignored;
   settle(pose, skin_.settings().interval_s, state, ignored);
+  // What starts takes over the whole of its anchors' velocity; so does the flesh beside them.
+  if (state.starting) {
+    state.velocity.fill(0.f);
+    state.surroundings.fleshVelocity.fill(0.f);
+  }
   if (coarse_) {
     state.coarse.assign(1, resampled(skin_, state, coarse_->skin()));
     coarse_->begin(pose, state.coarse.front());
@@ -173,6 +178,7 @@ void SkinStepper::rideOnCoarse(const SkinPose& pose, double duration_s, SkinStat
                                SkinStats& stats) {
   SkinState& coarse = state.coarse.front();
   coarseStart_ = coarse.position;
+  coarse.starting = state.starting;
   const std::uint64_t stepsBefore = stats.steps;
   coarse_->interval(pose, duration_s, coarse, stats);
   stats.steps = stepsBefore;  // the fine grid's are counted
@@ -203,8 +209,10 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
   PointSurroundings& around = state.surroundings;
   placer_->placeAnchors(pose, nextAnchor_);
   const auto rate = static_cast<float>(1 / duration_s);
-  const float way = followAnchors(nextAnchor_, rate, ode_ || coarse_ ? nullptr : &carryShare(state),
-                                  around, state.velocity);
+  // Equations of motion carry by themselves; what rides has been carried.
+  const bool carries = ode_ ? state.starting : !coarse_;
+  const float way = followAnchors(nextAnchor_, rate, carries ? &carryShare(state) : nullptr, around,
+                                  state.velocity);
   state.starting = false;
   const auto jump = static_cast<float>(kAnchorJump * skin_.size_m());
   if (!(way < jump * jump)) {
