@@ -61,7 +61,8 @@ TEST_P(Examples, KeepTheSkinOutsideOfTheFleshInEveryFrameOfEveryMotion) {
     EXPECT_TRUE(worst.finite) << clip.name;
     EXPECT_LE(worst.penetration_m, 1e-4) << clip.name;
     EXPECT_EQ(worst.stats.repaired_points, 0u) << clip.name;
-    EXPECT_LE(worst.stats.max_edge_stretch, 1.2 * character.def().skin->material.max_stretch) << clip.name;
+    EXPECT_LE(worst.stats.max_edge_stretch, 1.2 * character.def().skin->material.max_stretch)
+        << clip.name;
     RecordProperty(clip.name + ": deepest_um", std::to_string(1e6 * worst.penetration_m));
     RecordProperty(clip.name + ": stretch", std::to_string(worst.stretch));
   }

@@ -156,8 +156,7 @@ Character loadWithPoints(const std::string& file, int points) {
   return character;
 }
 
-Json measureAll(const Character& character, const EditingOptions& options,
-                const Console& console) {
+Json measureAll(const Character& character, const EditingOptions& options, const Console& console) {
   const std::string name = character.def().name;
   Json::List rows;
   std::vector<Edit> all = edits();

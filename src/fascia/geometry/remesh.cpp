@@ -86,6 +86,7 @@ class Remesher {
     std::stable_sort(found.begin(), found.end(),
                      [](const auto& x, const auto& y) { return x.first < y.first; });
     std::vector<Edge> out;
+    out.reserve(found.size());
     for (const auto& [key, edge] : found) out.push_back(edge);
     return out;
   }

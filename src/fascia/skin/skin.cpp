@@ -33,8 +33,7 @@ SkinParts build(const SkinDef& def, const SkinSettings& settings, const SkinBase
                 const Skin* before, const std::string& pointer, Diagnostics& diagnostics) {
   if (base.rig) return MeshSkinBuilder(def, settings, base, before, pointer, diagnostics).build();
   if (before && (before->surface() != nullptr) != def.surface.has_value()) before = nullptr;
-  if (def.surface)
-    return SurfaceSkinBuilder(def, settings, base, before, pointer, diagnostics).build();
+  if (def.surface) return SurfaceSkinBuilder(def, base, before, pointer, diagnostics).build();
   return GridSkinBuilder(def, settings, base, before, pointer, diagnostics).build();
 }
 

@@ -16,10 +16,9 @@ namespace fascia {
 // nullptr) are taken over where nothing that they are made of has changed.
 class SurfaceSkinBuilder {
  public:
-  SurfaceSkinBuilder(const SkinDef& def, const SkinSettings& settings, const SkinBase& base,
-                     const Skin* before, std::string pointer, Diagnostics& diagnostics)
+  SurfaceSkinBuilder(const SkinDef& def, const SkinBase& base, const Skin* before,
+                     std::string pointer, Diagnostics& diagnostics)
       : def_(def),
-        settings_(settings),
         base_(base),
         before_(before ? &before->parts() : nullptr),
         report_(base, std::move(pointer), diagnostics) {}
@@ -47,7 +46,6 @@ class SurfaceSkinBuilder {
   const VectorArray& restShape() const { return parts_.shape->rest; }
 
   const SkinDef& def_;
-  const SkinSettings& settings_;
   const SkinBase& base_;
   const SkinParts* before_;
   SkinReport report_;

@@ -532,7 +532,6 @@ class FinishFinest {
       : step_(step),
         levels_(levels),
         level_(levels[0]),
-        motion_(motion),
         r_(pointers(level_.place)),
         end_(pointers(motion.end)),
         velocity_(pointers(motion.velocity)),
@@ -602,7 +601,6 @@ class FinishFinest {
   const ClothStep& step_;
   std::span<ClothLevel> levels_;
   ClothLevel& level_;
-  ClothMotion& motion_;
   MutablePointers r_, end_, velocity_;
   Flesh flesh_;
   Start next_;

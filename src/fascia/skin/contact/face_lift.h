@@ -6,7 +6,8 @@
 
 namespace fascia {
 
-// The usual clearance, as a share of the skin's size: what lies between samples comes nearer by less.
+// The usual clearance, as a share of the skin's size: what lies between samples comes nearer by
+// less.
 constexpr double kFaceClearance = 1e-3;
 
 // Lifts faces off the flesh that comes through them between their points: moves free points out
