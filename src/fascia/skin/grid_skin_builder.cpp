@@ -96,18 +96,9 @@ SkinParts GridSkinBuilder::build() {
   if (settings_.integrator == "auto" && def_.tissue.stiffness_N_per_m3 > 0 &&
       parts_.defaultStep_s < kFinestStep_s && layout_.pointCount() >= 2 * kCoarsePoints)
     makeCoarse();
-  findFit();
+  // While a rest shape follows edits, what it was wrapped around stays inside.
+  parts_.fit = parts_.gridRest->wrap->fit;
   return std::move(parts_);
-}
-
-// While a rest shape follows edits, what it was wrapped around stays inside.
-void GridSkinBuilder::findFit() {
-  if (before_ && before_->gridRest->wrap == parts_.gridRest->wrap) {
-    parts_.fit = before_->fit;
-    return;
-  }
-  parts_.fit =
-      std::make_shared<SkinFit>(findSkinFit(base_.posedFlesh, closedTube(layout_, rest())));
 }
 
 bool GridSkinBuilder::checkGrid() const {
@@ -242,7 +233,10 @@ std::shared_ptr<const GridWrap> GridSkinBuilder::wrapAnew(const GridWrapKey& key
   std::copy(ends, ends + 2, wrap->ends);
   wrap->flesh = base_.flesh;
   wrap->posedFlesh = base_.posedFlesh;
-  wrap->rest = wrappedShape(ends);
+  if (isSaved())
+    wrap->rest = savedShape(), wrap->fit = fitOf(wrap->rest);
+  else
+    wrapFlesh(ends, *wrap);
   FaceSamples faces = sampleFaces(wrap->posedFlesh, cellTriangles(layout_), wrap->rest, wrap->fat_m,
                                   kFaceTolerance * sizeOf(wrap->rest));
   if (!faces.empty()) {
@@ -272,21 +266,26 @@ bool GridSkinBuilder::isSaved() const {
 }
 
 // A straight tube, or one along the way through the flesh where that holds more of it.
-VectorArray GridSkinBuilder::wrappedFlesh(const EndRing (&ends)[2]) const {
+void GridSkinBuilder::wrapFlesh(const EndRing (&ends)[2], GridWrap& wrap) const {
   const WrapOptions options{def_.fat.thickness_m, def_.grid.cling};
-  const auto faults = [&](const VectorArray& tube) {
-    const SkinFit fit = findSkinFit(base_.posedFlesh, closedTube(layout_, tube));
+  const auto faults = [](const SkinFit& fit) {
     return std::pair(fit.outside.size(), fit.crossings);
   };
-  VectorArray straight = shrinkWrap(base_.posedFlesh, layout_, ends[0], ends[1], options);
-  const auto ofStraight = faults(straight);
-  if (ofStraight == std::pair<std::size_t, std::size_t>(0, 0)) return straight;
+  wrap.rest = shrinkWrap(base_.posedFlesh, layout_, ends[0], ends[1], options);
+  wrap.fit = fitOf(wrap.rest);
+  if (faults(*wrap.fit) == std::pair<std::size_t, std::size_t>(0, 0)) return;
   VectorArray along = wrapAlongFlesh(base_.posedFlesh, layout_, ends[0], ends[1], options);
-  return faults(along) < ofStraight ? along : straight;
+  std::shared_ptr<const SkinFit> fit = fitOf(along);
+  if (!(faults(*fit) < faults(*wrap.fit))) return;
+  wrap.rest = std::move(along);
+  wrap.fit = std::move(fit);
 }
 
-VectorArray GridSkinBuilder::wrappedShape(const EndRing (&ends)[2]) const {
-  if (!isSaved()) return wrappedFlesh(ends);
+std::shared_ptr<const SkinFit> GridSkinBuilder::fitOf(const VectorArray& tube) const {
+  return std::make_shared<SkinFit>(findSkinFit(base_.posedFlesh, closedTube(layout_, tube)));
+}
+
+VectorArray GridSkinBuilder::savedShape() const {
   const GridLayout saved = savedLayout();
   VectorArray r(saved.storage());
   std::size_t p = 0;

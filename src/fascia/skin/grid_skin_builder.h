@@ -42,8 +42,9 @@ class GridSkinBuilder {
   std::shared_ptr<const GridWrap> wrapAnew(const GridWrapKey& key, const EndRing (&ends)[2]) const;
   bool isSaved() const;
   void liftRest(const FaceSamples& faces, GridWrap& wrap) const;
-  VectorArray wrappedFlesh(const EndRing (&ends)[2]) const;
-  VectorArray wrappedShape(const EndRing (&ends)[2]) const;
+  void wrapFlesh(const EndRing (&ends)[2], GridWrap& wrap) const;
+  std::shared_ptr<const SkinFit> fitOf(const VectorArray& tube) const;
+  VectorArray savedShape() const;
   void placePoints(GridWrap& wrap) const;
   void attach(GridWrap& wrap) const;
   void overrideAnchors(std::vector<TissueAnchors::Anchor>& anchors) const;
@@ -59,7 +60,6 @@ class GridSkinBuilder {
   void chooseScheme();
   void makeSelfContact();
   void makeCoarse();
-  void findFit();
 
   const VectorArray& rest() const { return parts_.shape->rest; }
   const Transform& jointFrame(int end) const {

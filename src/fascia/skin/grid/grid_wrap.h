@@ -14,6 +14,8 @@
 
 namespace fascia {
 
+struct SkinFit;
+
 // What of a definition decides how a grid is laid around the flesh. An edit that leaves it alone
 // keeps the wrap.
 struct GridWrapKey {
@@ -40,6 +42,7 @@ struct GridWrap {
   std::vector<TissueAnchors::Anchor> anchors;     // the strands' inner ends, point by point
   std::vector<TissueAnchors::Anchor> placements;  // every point in its nearest solid
   VectorArray placed;                             // where those are: `rest`, but for rounding
+  std::shared_ptr<const SkinFit> fit;             // of the shape that was wrapped
   std::shared_ptr<const FaceSamples> faces;       // nullptr: none are needed
 
   // The rest posture that it lies around.
