@@ -1,6 +1,7 @@
 #include <fascia/io/gltf/gltf_document.h>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 
 #include <fascia/io/gltf/gltf_accessor.h>
@@ -77,8 +78,9 @@ std::size_t GltfDocument::elementCount(int accessor) const {
 // An accessor may be named any number of times, and is decoded each time.
 void GltfDocument::charge(std::size_t numbers, int accessor) const {
   constexpr std::size_t kMostNumbers = 1'000'000'000;
-  decoded_ += numbers;
-  if (numbers <= kMostNumbers && decoded_ <= kMostNumbers) return;
+  // Players of one document are made side by side.
+  const std::size_t all = std::atomic_ref(decoded_).fetch_add(numbers) + numbers;
+  if (numbers <= kMostNumbers && all <= kMostNumbers) return;
   root()["accessors"]
       .at(static_cast<std::size_t>(accessor))
       .fail("asks for more than " + std::to_string(kMostNumbers) + " numbers in all");
