@@ -53,7 +53,6 @@ class GridSkinBuilder {
   void findSource();
   bool keepsQuantity(SkinQuantity quantity) const;
   void setQuantities();
-  void setNaturalLengths();
   void applyEdits();
   void makeTopology();
   void makeModel();

@@ -247,7 +247,7 @@ Vec3 MeshSkinBuilder::sag(std::size_t k) const {
 
 TriangleMembrane MeshSkinBuilder::makeMembrane() const {
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  TriangleMaterial material;
+  TriangleMaterial material = triangleMaterial(*quantities_, def_.material.max_stretch);
   for (const auto& t : rig_.triangles) {
     // Triangles between fixed points move as their joints do: they pull on nothing.
     if (rest_->fixed[t[0]] && rest_->fixed[t[1]] && rest_->fixed[t[2]]) continue;
@@ -256,13 +256,6 @@ TriangleMembrane MeshSkinBuilder::makeMembrane() const {
     const Joint& joint = joints_[rig_.weights[t[0]].joint[0]];
     material.u.push_back(joint.rest_world.rotation.col(1).cast<float>());
   }
-  const SkinQuantities& q = (*quantities_);
-  material.stretch_u = q[SkinQuantity::stretch_v];
-  material.stretch_v = q[SkinQuantity::stretch_u];
-  material.shear = q[SkinQuantity::shear];
-  material.bending = q[SkinQuantity::bending];
-  material.prestretch = q[SkinQuantity::prestretch];
-  material.max_stretch = static_cast<float>(def_.material.max_stretch);
   return TriangleMembrane(triangles, shape_->rest, material);
 }
 
@@ -314,8 +307,8 @@ void MeshSkinBuilder::makeModel() {
 // The pose function, on points in storage order. Fat that was put on or taken away is in its rest
 // shape.
 void MeshSkinBuilder::makePoseSkin() {
-  const std::vector<Vec3>& normals = rest_->normals;
   const SkinQuantities& q = (*quantities_);
+  const std::vector<Vec3>& normals = rest_->normals;
   const std::size_t count = rest_->order.size();
   std::vector<Eigen::Vector3f> rest;
   for (std::size_t k = 0; k < count; ++k) {

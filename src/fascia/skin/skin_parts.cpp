@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include <fascia/base/assert.h>
+#include <fascia/base/parallel.h>
 #include <fascia/base/suggest.h>
+#include <fascia/math/points.h>
 
 namespace fascia {
 
@@ -142,6 +144,28 @@ PointModel makePointModel(const PointModelInput& in) {
     p.stiffnessBound[k] += p.tissueStiffness[k];
   }
   return p;
+}
+
+void setNaturalLengths(const SkinDef& def, const PosedFlesh& flesh,
+                       const std::vector<TissueAnchors::Anchor>& anchors, const VectorArray& rest,
+                       FloatArray& restLength_m) {
+  if (def.tissue.rest_length_m || (def.points && !def.points->tissue_rest_length.empty())) return;
+  parallelFor(anchors.size(), [&](std::size_t n) {
+    const TissueAnchors::Anchor& a = anchors[n];
+    const Vec3 inner = flesh.worldFromMaterial(a.solid, a.material);
+    restLength_m[a.point] = static_cast<float>((pointAt(rest, a.point) - inner).norm());
+  });
+}
+
+TriangleMaterial triangleMaterial(const SkinQuantities& q, double maxStretch) {
+  TriangleMaterial material;
+  material.stretch_u = q[SkinQuantity::stretch_v];
+  material.stretch_v = q[SkinQuantity::stretch_u];
+  material.shear = q[SkinQuantity::shear];
+  material.bending = q[SkinQuantity::bending];
+  material.prestretch = q[SkinQuantity::prestretch];
+  material.max_stretch = static_cast<float>(maxStretch);
+  return material;
 }
 
 }  // namespace fascia

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <fascia/skin/mesh/triangle_membrane.h>
+#include <fascia/skin/point/tissue.h>
 #include <fascia/skin/skin.h>
 
 namespace fascia {
@@ -35,6 +37,14 @@ class SkinReport {
   std::string pointer_;
   Diagnostics& diagnostics_;
 };
+
+// Strands as long at rest as in the rest posture; unless the definition says otherwise.
+void setNaturalLengths(const SkinDef& def, const PosedFlesh& flesh,
+                       const std::vector<TissueAnchors::Anchor>& anchors, const VectorArray& rest,
+                       FloatArray& restLength_m);
+
+// What a membrane of triangles is made of, but for its directions: v runs along, as on a grid.
+TriangleMaterial triangleMaterial(const SkinQuantities& quantities, double maxStretch);
 
 // The solid nearest to a point, and how far away it is.
 struct NearestFlesh {

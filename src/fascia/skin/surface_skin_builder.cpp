@@ -48,7 +48,8 @@ SkinParts SurfaceSkinBuilder::build() {
   // Out of its range an edge would make a mesh without end.
   if (!report_.checkValues(def_) || !checkDef() || !lay() || !checkPoints()) return {};
   setQuantities();
-  setNaturalLengths();
+  setNaturalLengths(def_, base_.posedFlesh, attachment_->anchors().anchors(), restShape(),
+                    (*quantities_)[SkinQuantity::tissue_rest_length]);
   applyEdits();
   makeTopology();
   makeModel();
@@ -221,19 +222,6 @@ void SurfaceSkinBuilder::setQuantities() {
   }
 }
 
-// Where nobody says otherwise a strand is as long at rest as in the rest posture.
-void SurfaceSkinBuilder::setNaturalLengths() {
-  if (def_.tissue.rest_length_m || (def_.points && !def_.points->tissue_rest_length.empty()))
-    return;
-  FloatArray& restLength = (*quantities_)[SkinQuantity::tissue_rest_length];
-  const std::vector<TissueAnchors::Anchor>& anchors = attachment_->anchors().anchors();
-  parallelFor(anchors.size(), [&](std::size_t n) {
-    const TissueAnchors::Anchor& a = anchors[n];
-    const Vec3 inner = base_.posedFlesh.worldFromMaterial(a.solid, a.material);
-    restLength[a.point] = static_cast<float>((pointAt(restShape(), a.point) - inner).norm());
-  });
-}
-
 void SurfaceSkinBuilder::applyEdits() {
   std::vector<std::string> joints;
   for (std::size_t j = 0; j < base_.skeleton.jointCount(); ++j)
@@ -249,19 +237,12 @@ void SurfaceSkinBuilder::applyEdits() {
 
 // u runs across the way of a point's solid, as around a grid.
 void SurfaceSkinBuilder::makeTopology() {
-  const SkinQuantities& q = *quantities_;
-  TriangleMaterial material;
+  TriangleMaterial material = triangleMaterial(*quantities_, def_.material.max_stretch);
   for (const TriangleMembrane::Corners& t : rest_->triangles) {
     const SolidId solid = rest_->solid[t[0]];
     material.u.push_back(
         longestAxis(base_.posedFlesh.solid(solid), base_.posedFlesh.frame(solid)).cast<float>());
   }
-  material.stretch_u = q[SkinQuantity::stretch_v];
-  material.stretch_v = q[SkinQuantity::stretch_u];
-  material.shear = q[SkinQuantity::shear];
-  material.bending = q[SkinQuantity::bending];
-  material.prestretch = q[SkinQuantity::prestretch];
-  material.max_stretch = static_cast<float>(def_.material.max_stretch);
   parts_.topology = std::make_shared<MeshTopology>(
       count(), TriangleMembrane(rest_->triangles, restShape(), material), rest_->drawn);
 }

@@ -36,7 +36,6 @@ class SurfaceSkinBuilder {
   void attach();
   void drape(const TriangleMesh& mesh, const std::vector<std::uint32_t>& order);
   void setQuantities();
-  void setNaturalLengths();
   void applyEdits();
   void makeTopology();
   void makeModel();

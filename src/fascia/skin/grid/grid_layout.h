@@ -27,4 +27,11 @@ struct GridLayout {
   int wrapped(int i) const { return i < 0 ? i + columns : i >= columns ? i - columns : i; }
 };
 
+// visit(i, j, storage index), row by row.
+template <class Visit>
+void forEachGridPoint(const GridLayout& g, const Visit& visit) {
+  for (int j = 0; j < g.rows; ++j)
+    for (int i = 0; i < g.columns; ++i) visit(i, j, g.at(i, j));
+}
+
 }  // namespace fascia
