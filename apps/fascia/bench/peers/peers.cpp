@@ -11,6 +11,7 @@
 #include "bench/machine.h"
 #include "bench/peers/bullet_sheet.h"
 #include "bench/sheet/fascia_sheet.h"
+#include "bench/sheet/sheet_options.h"
 #include "console.h"
 #include "simulation_options.h"
 
@@ -27,10 +28,8 @@ Examples:
   fascia bench peers
   fascia bench peers --points 1000 --bullet 5x4,10x10)";
 
-struct PeerOptions {
-  std::vector<int> points = {1024, 10000, 100000};
+struct PeerOptions : SheetOptions {
   std::vector<std::string> bullet = {"5x4", "10x4"};
-  int frames = 180;
 };
 
 // Softest to stiffest material that is tried, in steps of a half octave.
@@ -154,11 +153,7 @@ void runPeers(const PeerOptions& options, const Console& console) {
 void addPeersBench(CLI::App& group, Console& console) {
   CLI::App& command = *group.add_subcommand("peers", "A sheet on spheres, beside Bullet");
   const auto options = std::make_shared<PeerOptions>();
-  command.add_option("--points", options->points, "Points (default: 1024,10000,100000)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("LIST")
-      ->check(numberIn(64, 4e6));
+  addSheetOptions(command, *options);
   command
       .add_option("--bullet", options->bullet,
                   "Bullet's settings, SUBSTEPSxITERATIONS (default: 5x4,10x4)")
@@ -166,9 +161,6 @@ void addPeersBench(CLI::App& group, Console& console) {
       ->allow_extra_args(false)
       ->type_name("LIST")
       ->check([](const std::string& text) { return sizeProblem(text, 1, 1000); });
-  command.add_option("--frames", options->frames, "Frames that are measured (default: 180)")
-      ->type_name("N")
-      ->check(numberIn(12, 1e5));
   console.addFlags(command);
   command.footer(kPeersFooter);
   command.callback([options, &console] { runPeers(*options, console); });

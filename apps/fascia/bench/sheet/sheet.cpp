@@ -10,8 +10,8 @@
 #include "bench/benches.h"
 #include "bench/machine.h"
 #include "bench/sheet/fascia_sheet.h"
+#include "bench/sheet/sheet_options.h"
 #include "console.h"
-#include "simulation_options.h"
 #ifdef FASCIA_WITH_BULLET
 #include "bench/peers/bullet_sheet.h"
 #endif
@@ -29,11 +29,10 @@ Examples:
   fascia bench sheet
   fascia bench sheet --points 10000 --threads 2 --steps 4 --runs 5)";
 
-struct ClothBenchOptions {
-  std::vector<int> points = {1024, 10000, 100000};
+struct ClothBenchOptions : SheetOptions {
   std::vector<int> threads = {1, 2};
   int steps = 0;  // per frame; 0: as skins choose
-  int frames = 180, runs = 3;
+  int runs = 3;
   bool skin = false;
 };
 
@@ -130,22 +129,11 @@ void runSheet(const ClothBenchOptions& options, const Console& console) {
 void addSheetBench(CLI::App& group, Console& console) {
   CLI::App& command = *group.add_subcommand("sheet", "Cloth on spheres");
   const auto options = std::make_shared<ClothBenchOptions>();
-  command.add_option("--points", options->points, "Points (default: 1024,10000,100000)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("LIST")
-      ->check(numberIn(64, 4e6));
-  command.add_option("--threads", options->threads, "Numbers of threads (default: 1,2)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("LIST")
-      ->check(numberIn(1, 1024));
+  addSheetOptions(command, *options);
+  addNumbers(command, "--threads", options->threads, "Numbers of threads (default: 1,2)", 1, 1024);
   command.add_option("--steps", options->steps, "Steps of cloth in a frame (default: as skins)")
       ->type_name("N")
       ->check(numberIn(1, 1000));
-  command.add_option("--frames", options->frames, "Frames that are measured (default: 180)")
-      ->type_name("N")
-      ->check(numberIn(12, 1e5));
   command.add_option("--runs", options->runs, "Runs, of which the fastest counts (default: 3)")
       ->type_name("N")
       ->check(numberIn(1, 100));
