@@ -189,8 +189,8 @@ class RandomEdits {
     return "nothing";
   }
   std::string resolution(CharacterDef& def) {
-    def.skin->grid.columns = 14 + static_cast<int>(below(6));
-    def.skin->grid.rows = 16 + static_cast<int>(below(8));
+    def.skin->grid.columns = start_.skin->grid.columns - 2 + static_cast<int>(below(6));
+    def.skin->grid.rows = start_.skin->grid.rows - 4 + static_cast<int>(below(8));
     return "resolution";
   }
   std::string addOrRemoveSolid(CharacterDef& def) {

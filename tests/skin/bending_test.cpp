@@ -25,14 +25,46 @@ TEST_P(BendingTest, ForceIsMinusTheGradientOfTheEnergy) {
   const GridLayout g = GetParam().layout();
   VectorArray rest;
   const Bending bending = randomBending(g, random, rest);
-  // Up to folds that make cells lose most of their area.
-  for (const double amplitude : {0.02, 0.15}) {
-    VectorArray r = rest, force(g.storage());
+  VectorArray r = rest, force(g.storage());
+  test::scatter(g, 0.002, random, r);
+  bending.addForces(r, force);
+  const Eigen::VectorXd gradient =
+      test::energyGradient(g, r, [&](const VectorArray& x) { return bending.energy(x); });
+  EXPECT_LT(derivativeMismatch(-gradient, test::flat(g, force)), 1e-4);
+}
+
+// Also of folds that make cells lose most of their area.
+TEST_P(BendingTest, StiffnessKeepsItsBoundHoweverTheGridIsCrushed) {
+  Random random(34);
+  const GridLayout g = GetParam().layout();
+  VectorArray rest;
+  const Bending bending = randomBending(g, random, rest);
+  FloatArray bound = test::constant(g, 0);
+  bending.addStiffnessBound(bound);
+  const auto n = static_cast<Eigen::Index>(3 * g.pointCount());
+  Eigen::VectorXd most(n);
+  Eigen::Index at = 0;
+  test::forEachPoint(g, [&](int, int, std::size_t k) {
+    most.segment<3>(at).setConstant(bound[k]);
+    at += 3;
+  });
+  for (const double amplitude : {0.0, 0.02, 0.15, 0.5}) {
+    VectorArray r = rest;
     test::scatter(g, amplitude, random, r);
-    bending.addForces(r, force);
-    const Eigen::VectorXd gradient =
-        test::energyGradient(g, r, [&](const VectorArray& x) { return bending.energy(x); });
-    EXPECT_LT(derivativeMismatch(-gradient, test::flat(g, force)), 5e-5) << amplitude;
+    std::vector<Eigen::Triplet<double>> entries;
+    bending.addForceJacobian(r, entries);
+    Eigen::SparseMatrix<double> jacobian(n, n);
+    jacobian.setFromTriplets(entries.begin(), entries.end());
+    // The stiffest direction, in the metric of the bound.
+    Eigen::VectorXd direction = Eigen::VectorXd::Ones(n);
+    for (Eigen::Index i = 0; i < n; ++i) direction[i] = random.uniform(-1, 1);
+    for (int power = 0; power < 100; ++power) {
+      direction = (-(jacobian * direction).array() / most.array().max(1e-12)).matrix();
+      direction /= direction.norm();
+    }
+    const double stiffness = -direction.dot(jacobian * direction);
+    EXPECT_GT(stiffness, 0) << amplitude;
+    EXPECT_LT(stiffness, direction.dot(most.asDiagonal() * direction)) << amplitude;
   }
 }
 

@@ -46,7 +46,7 @@ struct CoarseTube {
     return mesh;
   }
   void lift(const Field& field, const FaceSamples& samples) {
-    liftFaces(samples, field, points, 1e-3f, position);
+    liftFaces(samples, field, points, 1e-3f, kRestLift, position);
   }
   double deepest(const DistanceField& field) const { return deepestFace(field, surface()); }
 };
@@ -133,6 +133,28 @@ TEST(FaceLift, BringsFacesOutOfTheFlesh) {
     const Vec3 p = test::at(tube.position, k);
     EXPECT_LT(std::hypot(p.x(), p.z()), 0.331 / 0.9397 + 1e-2);
   });
+}
+
+TEST(FaceLift, StretchesNoEdgeFartherThanItMay) {
+  // A ball far larger than the tube's cells sticks out of it: only spikes would cover it.
+  const RigidSolids ball = RigidSolids().addSphere({0.34, 0, 0}, 0.3);
+  CoarseTube tube;
+  const auto samples = tube.samples(ball);
+  ASSERT_FALSE(samples->empty());
+  const auto longest = [&] {
+    float most = 0;
+    for (const FaceSamples::Edge& e : samples->edges) {
+      const Vec3 along = test::at(tube.position, e.ends[1]) - test::at(tube.position, e.ends[0]);
+      most = std::max(most, static_cast<float>(along.norm()) / e.rest_m);
+    }
+    return most;
+  };
+  EXPECT_NEAR(longest(), 1, 1e-5);
+  const double deep_m = tube.deepest(ball);
+  liftFaces(*samples, ball, tube.points, 1e-3f, 1.2, tube.position);
+  EXPECT_GT(longest(), 1.15f);
+  EXPECT_LT(longest(), 1.201f);
+  EXPECT_LE(tube.deepest(ball), deep_m);
 }
 
 TEST(FaceLift, LeavesFixedPointsAndFacesThatAreOutside) {

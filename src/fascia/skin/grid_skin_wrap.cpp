@@ -76,6 +76,7 @@ std::shared_ptr<const GridWrap> GridSkinBuilder::wrapAnew(const GridWrapKey& key
                                   kFaceTolerance * sizeOf(wrap->rest));
   if (!faces.empty()) {
     if (!isSaved()) liftRest(faces, *wrap);
+    measureEdges(wrap->rest, faces);
     wrap->faces = std::make_shared<FaceSamples>(std::move(faces));
   }
   placePoints(*wrap);
@@ -92,7 +93,7 @@ void GridSkinBuilder::liftRest(const FaceSamples& faces, GridWrap& wrap) const {
     if (j > 0 && j + 1 < layout_.rows) points.free[k] = 1;
   });
   liftFaces(faces, wrap.posedFlesh, points, static_cast<float>(kFaceClearance * sizeOf(wrap.rest)),
-            wrap.rest);
+            kRestLift, wrap.rest);
   fillPads(layout_, wrap.rest);
 }
 

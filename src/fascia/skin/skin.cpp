@@ -24,7 +24,7 @@ const VectorArray& shown(const Skin& skin, const DistanceField& flesh, const Ski
   if (!faces) return state.position;
   lifted = state.position;
   liftFaces(*faces, flesh, skin.points(), static_cast<float>(kFaceClearance * skin.size_m()),
-            lifted);
+            kShownLift, lifted);
   skin.topology().complete(lifted);
   return lifted;
 }

@@ -153,15 +153,84 @@ class FaceLift {
   std::vector<char> moved_;  // per point, by the last pass
 };
 
+// Takes back what of a lift would stretch edges too far. Of each edge the shares of both ends'
+// ways that keep it short enough are found, each point takes the least of its edges, and since the
+// two ends of an edge may then have taken different ones, this is repeated.
+class LiftLimit {
+ public:
+  LiftLimit(const FaceSamples& faces, float stretch, const VectorArray& before,
+            VectorArray& position)
+      : faces_(faces),
+        stretch_(stretch),
+        before_(before),
+        position_(position),
+        share_(position.size(), 1) {}
+
+  void apply() {
+    for (int round = 0; round < kMostRounds && shorten(); ++round) {
+    }
+  }
+
+ private:
+  static constexpr int kMostRounds = 12;
+
+  // Whether an edge was too long.
+  bool shorten() {
+    bool any = false;
+    for (const FaceSamples::Edge& edge : faces_.edges) {
+      const float share = shareOf(edge);
+      if (share >= 1) continue;
+      any = true;
+      for (const std::uint32_t k : edge.ends) share_[k] = std::min(share_[k], share);
+    }
+    if (!any) return false;
+    for (std::size_t k = 0; k < share_.size(); ++k) {
+      if (share_[k] == 1) continue;
+      for (const auto axis : VectorArray::kAxes) {
+        const float start = (before_.*axis)[k];
+        (position_.*axis)[k] = start + share_[k] * ((position_.*axis)[k] - start);
+      }
+      share_[k] = 1;
+    }
+    return true;
+  }
+
+  // The largest s ≤ 1 with |a + s (b − a)| no longer than the edge may be, from a before to b now.
+  float shareOf(const FaceSamples::Edge& edge) const {
+    const auto along = [&](const VectorArray& r) -> Eigen::Vector3f {
+      return floatPointAt(r, edge.ends[1]) - floatPointAt(r, edge.ends[0]);
+    };
+    const Eigen::Vector3f now = along(position_);
+    const float most = stretch_ * edge.rest_m, most2 = most * most;
+    if (now.squaredNorm() <= most2 * kEven) return 1;
+    const Eigen::Vector3f start = along(before_), way = now - start;
+    const float a = way.squaredNorm(), b = start.dot(way);
+    const float c = start.squaredNorm() - std::max(most2, start.squaredNorm());
+    if (a == 0 || now.squaredNorm() <= start.squaredNorm() * kEven) return 1;
+    return std::clamp((std::sqrt(std::max(0.f, b * b - a * c)) - b) / a, 0.f, 1.f);
+  }
+
+  // Rounding is no stretch.
+  static constexpr float kEven = 1.0001f;
+
+  const FaceSamples& faces_;
+  float stretch_;
+  const VectorArray& before_;
+  VectorArray& position_;
+  std::vector<float> share_;  // per point
+};
+
 }  // namespace
 
 void liftFaces(const FaceSamples& faces, const DistanceField& flesh, const PointModel& points,
-               float clearance_m, VectorArray& position) {
+               float clearance_m, double most_stretch, VectorArray& position) {
   FASCIA_ASSERT(points.fat.size() == position.size() && points.free.size() == position.size(),
                 "a number for each point");
+  const VectorArray before = position;
   FaceLift lift(faces, flesh, points, clearance_m, position);
   for (const float way : kShares)
-    if (!lift.pass(way)) return;
+    if (!lift.pass(way)) break;
+  LiftLimit(faces, static_cast<float>(most_stretch), before, position).apply();
 }
 
 }  // namespace fascia

@@ -9,13 +9,18 @@ namespace fascia {
 // The usual clearance, as a share of the skin's size: what lies between samples comes nearer by
 // less.
 constexpr double kFaceClearance = 1e-3;
+// And how far edges may be stretched for it: those of a rest shape, which are at rest then as they
+// are, and of a shape that is shown.
+constexpr double kRestLift = 2, kShownLift = 1.68;
 
 // Lifts faces off the flesh that comes through them between their points: moves free points out
 // until hardly a sample is nearer to a solid than `clearance_m`, or than its fat where that is
-// less. A function of the positions alone, and a continuous one: it is how a skin is shown, and
-// what is simulated knows nothing of it. (As a part of the simulation it has no state of rest:
-// which of a face's points bears it is left open.)
+// less; but no edge beyond `most_stretch` times its rest length that was not so long before:
+// where points are too few for the flesh, faces stay in it rather than become spikes. A function of
+// the positions alone, and a continuous one: it is how a skin is shown, and what is simulated knows
+// nothing of it. (As a part of the simulation it has no state of rest: which of a face's points
+// bears it is left open.)
 void liftFaces(const FaceSamples& faces, const DistanceField& flesh, const PointModel& points,
-               float clearance_m, VectorArray& position);
+               float clearance_m, double most_stretch, VectorArray& position);
 
 }  // namespace fascia

@@ -18,6 +18,12 @@ constexpr double kSecond[3][9] = {
 };
 // B12 counts twice in the sum over a and b.
 constexpr double kMultiplicity[3] = {1, 1, 2};
+// The points that turn the normal: to the sides, above and below.
+constexpr int kTurning[4] = {1, 3, 5, 7};
+// Their share in a usual gradient, of a second difference's.
+constexpr double kTurningShare = 0.5;
+// So much larger than the usual one a gradient may be.
+constexpr double kGrown = 1.2;
 
 }  // namespace
 
@@ -51,7 +57,15 @@ Bending::Bending(const GridLayout& g, const VectorArray& rest, const FloatArray&
       node.inverse[1] = static_cast<float>(1 / (h2 * h2));
       node.inverse[2] = static_cast<float>(1 / (h1 * h2));
       const Curvature at = curvature(node, rest);
-      for (int a = 0; a < 3; ++a) node.rest[a] = static_cast<float>(at.b[a]);
+      for (int a = 0; a < 3; ++a) {
+        node.rest[a] = static_cast<float>(at.b[a]);
+        for (int q = 0; q < 9; ++q)
+          node.usual[a][q] = static_cast<float>(std::max(
+              at.gradient[a][q].norm(), std::abs(kSecond[a][q]) * double{node.inverse[a]}));
+        for (const int q : kTurning)
+          node.usual[a][q] =
+              std::max(node.usual[a][q], static_cast<float>(kTurningShare) * node.inverse[a]);
+      }
       nodes_.push_back(node);
     }
   }
@@ -86,6 +100,15 @@ Bending::Curvature Bending::curvature(const Node& node, const VectorArray& r) co
   return out;
 }
 
+double Bending::fade(const Node& node, const Curvature& at, int a) {
+  double left = 1;
+  for (int q = 0; q < 9; ++q) {
+    const double most = kGrown * node.usual[a][q], squared = at.gradient[a][q].squaredNorm();
+    if (squared > most * most) left = std::min(left, most * most / squared);
+  }
+  return left;
+}
+
 double Bending::energy(const VectorArray& r) const {
   double total = 0;
   for (const Node& node : nodes_) {
@@ -102,7 +125,8 @@ void Bending::addForces(const VectorArray& r, VectorArray& force) const {
   for (const Node& node : nodes_) {
     const Curvature at = curvature(node, r);
     for (int a = 0; a < 3; ++a) {
-      const double s = -2 * kMultiplicity[a] * node.weight * (at.b[a] - node.rest[a]);
+      const double s =
+          -2 * kMultiplicity[a] * node.weight * (at.b[a] - node.rest[a]) * fade(node, at, a);
       for (int q = 0; q < 9; ++q) {
         const Vec3 f = s * at.gradient[a][q];
         force.x[node.stencil[q]] += static_cast<float>(f.x());
@@ -135,12 +159,13 @@ void Bending::addForceJacobian(const VectorArray& r,
                                std::vector<Eigen::Triplet<double>>& entries) const {
   for (const Node& node : nodes_) {
     const Curvature at = curvature(node, r);
+    double scale[3];
+    for (int a = 0; a < 3; ++a) scale[a] = 2 * kMultiplicity[a] * node.weight * fade(node, at, a);
     for (int p = 0; p < 9; ++p) {
       for (int q = 0; q < 9; ++q) {
         Mat3 h = Mat3::Zero();
         for (int a = 0; a < 3; ++a)
-          h += 2 * kMultiplicity[a] * node.weight * at.gradient[a][p] *
-               at.gradient[a][q].transpose();
+          h += scale[a] * at.gradient[a][p] * at.gradient[a][q].transpose();
         for (int m = 0; m < 3; ++m)
           for (int n = 0; n < 3; ++n)
             entries.emplace_back(3 * pointOf(node.stencil[p]) + m, 3 * pointOf(node.stencil[q]) + n,
@@ -156,9 +181,8 @@ void Bending::addStiffnessBound(FloatArray& bound) const {
       double sum = 0;
       for (int a = 0; a < 3; ++a) {
         double row = 0;
-        for (int q = 0; q < 9; ++q) row += std::abs(kSecond[a][q]);
-        sum += 2 * kMultiplicity[a] * node.weight * node.inverse[a] * node.inverse[a] *
-               std::abs(kSecond[a][p]) * row;
+        for (int q = 0; q < 9; ++q) row += node.usual[a][q];
+        sum += 2 * kMultiplicity[a] * node.weight * kGrown * kGrown * node.usual[a][p] * row;
       }
       bound[node.stencil[p]] += static_cast<float>(sum);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <fascia/base/assert.h>
 #include <fascia/base/parallel.h>
@@ -114,7 +115,10 @@ class Sampler {
     out_.blocks.push_back({narrow(firstSample), narrow(out_.samples.size() - firstSample),
                            narrow(firstPoint), narrow(out_.points.size() - firstPoint)});
   }
-  FaceSamples take() { return std::move(out_); }
+  FaceSamples take() {
+    addEdges();
+    return std::move(out_);
+  }
 
  private:
   void addFace(std::size_t f) {
@@ -135,6 +139,16 @@ class Sampler {
     pieces = 1;
   }
 
+  void addEdges() {
+    const std::unordered_set<std::uint32_t> moved(out_.points.begin(), out_.points.end());
+    for (const Face& face : faces_)
+      for (std::size_t e = 0; e < 3; ++e) {
+        const std::uint32_t a = face[e], b = face[(e + 1) % 3];
+        if ((moved.contains(a) || moved.contains(b)) && edges_.erase(edgeKey(a, b)) > 0)
+          out_.edges.push_back({{a, b}, 0});
+      }
+  }
+
   std::span<const Face> faces_;
   std::span<const int> pieces_;
   std::unordered_map<std::uint64_t, int> edges_;  // pieces that an edge is still to be cut into
@@ -151,7 +165,14 @@ FaceSamples sampleFaces(const DistanceField& field, std::span<const Face> faces,
   Sampler sampler(faces, pieces);
   for (std::size_t f = 0; f < faces.size(); f += kFacesPerBlock)
     sampler.addBlock(f, std::min(kFacesPerBlock, faces.size() - f));
-  return sampler.take();
+  FaceSamples out = sampler.take();
+  measureEdges(rest, out);
+  return out;
+}
+
+void measureEdges(const VectorArray& rest, FaceSamples& faces) {
+  for (FaceSamples::Edge& edge : faces.edges)
+    edge.rest_m = (floatPointAt(rest, edge.ends[1]) - floatPointAt(rest, edge.ends[0])).norm();
 }
 
 }  // namespace fascia

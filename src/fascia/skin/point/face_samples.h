@@ -22,9 +22,15 @@ struct FaceSamples {
     std::uint32_t firstSample, sampleCount;
     std::uint32_t firstPoint, pointCount;
   };
+  // Of all edges of the faces around points that samples lie between.
+  struct Edge {
+    std::array<std::uint32_t, 2> ends;
+    float rest_m;  // its length
+  };
   std::vector<Sample> samples;
   std::vector<Block> blocks;
   std::vector<std::uint32_t> points;  // of blocks, without repetition within one
+  std::vector<Edge> edges;
 
   bool empty() const { return samples.empty(); }
 };
@@ -35,5 +41,7 @@ struct FaceSamples {
 FaceSamples sampleFaces(const DistanceField& field,
                         std::span<const std::array<std::uint32_t, 3>> faces,
                         const VectorArray& rest, double fat_m, double tolerance_m);
+// Takes the edges' lengths from another rest shape.
+void measureEdges(const VectorArray& rest, FaceSamples& faces);
 
 }  // namespace fascia
