@@ -79,8 +79,10 @@ SkinStepper::SkinStepper(const Skin& skin)
       contact_(skin.makeContact()) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
-  if (skin.fatPressure())
+  if (skin.fatPressure()) {
     fatPressure_ = FatPressure(*skin.fatPressure(), skin.topology().storage());
+    carried_.resize(skin.topology().storage());
+  }
   const std::string& integrator = skin.settings().integrator;
   if (integrator != "auto" && integrator != "leapfrog" && !skin.isCloth())
     ode_ = std::make_unique<OdeSkin>(skin);
@@ -156,7 +158,7 @@ void SkinStepper::interval(const SkinPose& pose, double duration_s, SkinState& s
   Stopwatch watch;
   surround(pose, duration_s, state, stats);
   watch.lap(stats.other_s);
-  leapfrog(steps, duration_s, state, stats);
+  leapfrog(steps, state, stats);
   watch.lap(stats.forces_s);
   settle(pose, duration_s, state, stats);
   watch.lap(stats.constraints_s);
@@ -224,6 +226,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
     state.coarseVelocity.fill(0.f);
     stats.repaired_points += skin_.pointCount();
   }
+  if (skin_.fatPressure()) placer_->placeCarried(pose, carried_);
   placer_->placeFixed(pose, target_);
   for (const std::size_t k : skin_.fixedPoints())
     for (const auto axis : VectorArray::kAxes)
@@ -244,13 +247,15 @@ int SkinStepper::chooseStep(double duration_s) {
   return steps;
 }
 
-void SkinStepper::leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats) {
+void SkinStepper::leapfrog(int steps, SkinState& state, SkinStats& stats) {
   StepInputs inputs{&skin_.points(), &coefficients_, &state.surroundings, nullptr, {}};
   for (int a = 0; a < 3; ++a)
     inputs.gravity[a] = static_cast<float>(skin_.settings().gravity_m_per_s2[a]);
-  if (skin_.fatPressure())
-    inputs.extraForce = &fatPressure_.press(coefficients_, state.surroundings, duration_s,
-                                            state.position, state.velocity);
+  if (skin_.fatPressure()) {
+    fatPressure_.begin(coefficients_, state.surroundings, carried_, nextAnchor_, state.position);
+    inputs.extraForce = &fatPressure_.force();
+    inputs.stepEnd = &fatPressure_;
+  }
   surface_->run(inputs, steps, state.position, state.velocity);
   const double h = coefficients_.step_s;
   stats.steps += static_cast<std::uint64_t>(steps);
