@@ -22,10 +22,9 @@ constexpr double kFatStep_s = 1.0 / 480;
 struct Ball {
   static constexpr std::size_t kAround = 16, kRings = 11, kCount = 2 + kRings * kAround;
   std::vector<TriangleMembrane::Corners> triangles;
-  VectorArray rest{kCount}, anchor{kCount}, carried, position, velocity{kCount};
+  VectorArray rest{kCount}, anchor{kCount}, carried, carriedToEnd, position, velocity{kCount};
   PointModel points;
   StepCoefficients step;
-  PointSurroundings around;
   FatPressureModel model;
   double drag_per_s, interval_s;
   double load_Pa = 0;  // outward on every point, along its normal at rest
@@ -53,9 +52,7 @@ struct Ball {
       points.tissueStiffness[k] = static_cast<float>(tissue * area);
       step.gain[k] = step.step_s / points.mass[k];
     }
-    around.resize(kCount);
-    around.anchor = anchor;
-    position = carried = rest;
+    position = carried = carriedToEnd = rest;
     const FloatArray fat(kCount, static_cast<float>(kFat_m));
     const std::vector<SolidId> solid(kCount, SolidId(0));
     model = prepareFatPressure({bulk_Pa, triangles, rest, anchor, fat, solid, points, false});
@@ -86,7 +83,7 @@ struct Ball {
   }
   // At the start of an interval.
   const VectorArray& press(FatPressure& fat) const {
-    fat.begin(step, around, carried, anchor, position);
+    fat.begin(step, {carried, carriedToEnd, anchor, anchor, interval_s}, position);
     return fat.force();
   }
   // `hold` puts points where they are held, after every step.
@@ -134,12 +131,37 @@ TEST(FatPressure, LeavesRestAloneBitForBit) {
   FatPressure fat(ball.model, Ball::kCount);
   const VectorArray& force = ball.press(fat);
   for (std::size_t k = 0; k < Ball::kCount; ++k) EXPECT_EQ(at(force, k).norm(), 0) << k;
-  // And a body that moves as a whole.
-  ball.velocity.fill(3.f), ball.around.anchorVelocity.fill(3.f);
-  EXPECT_EQ(at(ball.press(fat), 5).norm(), 0);
-  ball.velocity.fill(0.f);
   put(ball.position, 5, 1.01 * at(ball.rest, 5));
   EXPECT_GT(at(ball.press(fat), 5).norm(), 0);
+}
+
+// In steps of an interval in which its body turns by 7°, points on their way with it.
+TEST(FatPressure, IsNoneInABodyThatTurnsUnderItsSkin) {
+  for (const bool reachesAnchors : {false, true}) {
+    Ball ball(4e4, 0, 0);
+    ball.model.reachesAnchors = reachesAnchors;
+    VectorArray anchorAtEnd(Ball::kCount);
+    const Eigen::AngleAxisd turn(0.12, Vec3(0.6, 0, 0.8));
+    for (std::size_t k = 0; k < Ball::kCount; ++k) {
+      put(ball.anchor, k, 0.9 * at(ball.rest, k));
+      put(anchorAtEnd, k, turn * at(ball.anchor, k));
+      put(ball.carriedToEnd, k, turn * at(ball.rest, k));
+      put(ball.velocity, k, (turn * at(ball.rest, k) - at(ball.rest, k)) / ball.interval_s);
+    }
+    if (reachesAnchors) ball.model.layers[0].rest_m3 = (1 - std::pow(0.9, 3)) * ball.volume_m3();
+    FatPressure fat(ball.model, Ball::kCount);
+    fat.begin(ball.step,
+              {ball.carried, ball.carriedToEnd, ball.anchor, anchorAtEnd, ball.interval_s},
+              ball.position);
+    for (int s = 0; s <= 8; ++s) {
+      EXPECT_NEAR(fat.pressures_Pa()[0], 0, 1) << s;
+      if (s == 8) break;
+      for (std::size_t k = 0; k < Ball::kCount; ++k)
+        put(ball.position, k,
+            at(ball.position, k) + double{ball.step.step_s} * at(ball.velocity, k));
+      fat.stepped(static_cast<float>(s + 1) * ball.step.step_s, ball.position, ball.velocity);
+    }
+  }
 }
 
 // What lies between two spheres, as far as the mesh is one.

@@ -29,7 +29,7 @@ class SkinStepper final : public SkinRun {
   void rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   const FloatArray& carryShare(const SkinState& state);
   int chooseStep(double duration_s);
-  void leapfrog(int steps, SkinState& state, SkinStats& stats);
+  void leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats);
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void settle(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void takeFixed(VectorArray& position) const;
@@ -44,8 +44,9 @@ class SkinStepper final : public SkinRun {
   std::unique_ptr<SkinContact> contact_;
   SelfContact selfContact_;
   FatPressure fatPressure_;
-  VectorArray nextAnchor_, target_, carried_;
-  FloatArray wholly_;  // ones
+  VectorArray nextAnchor_, target_;
+  VectorArray carried_, nextCarried_;  // where fat presses
+  FloatArray wholly_;                  // ones
   std::unique_ptr<OdeSkin> ode_;
 
   // The grid that this one rides on, if any.

@@ -131,57 +131,76 @@ FatPressureModel prepareFatPressure(const FatPressureInput& input) {
 }
 
 FatPressure::FatPressure(const FatPressureModel& model, std::size_t storage)
-    : model_(&model), starts_(model.layers.size()), pressures_(model.layers.size()) {
-  for (VectorArray* a : {&area_, &force_, &halfway_, &meanArea_}) a->resize(storage);
+    : model_(&model), interval_(model.layers.size()), pressures_(model.layers.size()) {
+  for (VectorArray* a : {&area_, &force_, &carried_, &carriedVelocity_, &halfway_, &meanArea_})
+    a->resize(storage);
 }
 
-void FatPressure::begin(const StepCoefficients& step, const PointSurroundings& around,
-                        const VectorArray& carriedToEnd, const VectorArray& anchorAtEnd,
-                        const VectorArray& position) {
-  FASCIA_ASSERT(step.step_s > 0 && position.size() == area_.size(), "the state is of this skin");
-  FASCIA_ASSERT(carriedToEnd.size() == area_.size() && anchorAtEnd.size() == area_.size(),
-                "so is what carries it");
+void FatPressure::begin(const StepCoefficients& step, const Way& way, const VectorArray& position) {
+  const std::size_t count = area_.size();
+  FASCIA_ASSERT(step.step_s > 0 && way.duration_s > 0, "time goes on");
+  FASCIA_ASSERT(
+      position.size() == count && way.carried.size() == count && way.carriedToEnd.size() == count,
+      "the state is of this skin, and so is what carries it");
   step_ = &step;
-  around_ = &around;
+  carried_ = way.carried;
+  const auto rate = static_cast<float>(1 / way.duration_s);
+  for (const auto axis : VectorArray::kAxes) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const float by = (way.carriedToEnd.*axis)[k] - (way.carried.*axis)[k];
+      (carriedVelocity_.*axis)[k] = rate * by;
+      (halfway_.*axis)[k] = (way.carried.*axis)[k] + 0.5f * by;
+    }
+  }
   area_.fill(0.f);
-  addAreaVectors(model_->triangles, carriedToEnd, 1, area_);
-  if (model_->reachesAnchors)
-    meanAreaVectors(model_->triangles, anchorAtEnd, carriedToEnd, halfway_, meanArea_);
+  addAreaVectors(model_->triangles, halfway_, 1, area_);
+  measureCarried(way);
   for (std::size_t l = 0; l < model_->layers.size(); ++l) {
     const FatPressureModel::Layer& layer = model_->layers[l];
-    const std::span<const std::uint32_t> points = pointsOf(*model_, layer);
     double answer = 0;
-    for (const std::uint32_t k : points) answer += double{square(area_, k) * step.gain[k]};
-    double reference_m3 = -layer.rest_m3;
-    if (model_->reachesAnchors)
-      reference_m3 += volumeBetween(meanArea_, anchorAtEnd, carriedToEnd, points);
-    reference_m3 -= volumeBetween(area_, anchorAtEnd, carriedToEnd, points);
-    starts_[l] = {reference_m3, double{step.step_s} * answer};
-    pressures_[l] = held_Pa(-model_->bulk_Pa / layer.volume_m3 *
-                            (reference_m3 + height_m3(layer, 0, position)));
+    for (const std::uint32_t k : pointsOf(*model_, layer))
+      answer += double{square(area_, k) * step.gain[k]};
+    interval_[l].answer = double{step.step_s} * answer;
+    pressures_[l] = held_Pa(-model_->bulk_Pa / layer.volume_m3 * change_m3(l, 0, position));
     push(layer, pressures_[l]);
   }
 }
 
-// Σ N·(r − a)
-double FatPressure::height_m3(const FatPressureModel::Layer& layer, float time_s,
-                              const VectorArray& position) const {
-  double sum = 0;
-  for (const std::uint32_t k : pointsOf(*model_, layer))
-    sum += double{heightOver(area_, around_->anchor, around_->anchorVelocity, time_s, position, k)};
+// V_c and its rate, where it counts.
+void FatPressure::measureCarried(const Way& way) {
+  std::fill(interval_.begin(), interval_.end(), Interval{0, 0, 0});
+  if (!model_->reachesAnchors) return;
+  meanAreaVectors(model_->triangles, way.anchor, way.carried, halfway_, meanArea_);
+  for (std::size_t l = 0; l < model_->layers.size(); ++l)
+    interval_[l].carried_m3 =
+        volumeBetween(meanArea_, way.anchor, way.carried, pointsOf(*model_, model_->layers[l])) -
+        model_->layers[l].rest_m3;
+  meanAreaVectors(model_->triangles, way.anchorAtEnd, way.carriedToEnd, halfway_, meanArea_);
+  for (std::size_t l = 0; l < model_->layers.size(); ++l) {
+    const double end_m3 = volumeBetween(meanArea_, way.anchorAtEnd, way.carriedToEnd,
+                                        pointsOf(*model_, model_->layers[l])) -
+                          model_->layers[l].rest_m3;
+    interval_[l].rate_m3_per_s = (end_m3 - interval_[l].carried_m3) / way.duration_s;
+  }
+}
+
+// ΔV
+double FatPressure::change_m3(std::size_t layer, float time_s, const VectorArray& position) const {
+  double sum = interval_[layer].carried_m3 + double{time_s} * interval_[layer].rate_m3_per_s;
+  for (const std::uint32_t k : pointsOf(*model_, model_->layers[layer]))
+    sum += double{heightOver(area_, carried_, carriedVelocity_, time_s, position, k)};
   return sum;
 }
 
 void FatPressure::stepped(float time_s, VectorArray& position, VectorArray& velocity) {
-  FASCIA_ASSERT(step_ && around_, "begin() comes first");
+  FASCIA_ASSERT(step_, "begin() comes first");
   for (std::size_t l = 0; l < model_->layers.size(); ++l) {
     const FatPressureModel::Layer& layer = model_->layers[l];
     const double stiffness_Pa_per_m3 = model_->bulk_Pa / layer.volume_m3;
-    const double wanted_Pa =
-        -stiffness_Pa_per_m3 * (starts_[l].reference_m3 + height_m3(layer, time_s, position));
+    const double wanted_Pa = -stiffness_Pa_per_m3 * change_m3(l, time_s, position);
     const double before_Pa = pressures_[l];
     pressures_[l] = held_Pa(before_Pa + (wanted_Pa - before_Pa) /
-                                            (1 + stiffness_Pa_per_m3 * starts_[l].answer));
+                                            (1 + stiffness_Pa_per_m3 * interval_[l].answer));
     const auto by = static_cast<float>(pressures_[l] - before_Pa);
     for (const std::uint32_t k : pointsOf(*model_, layer)) {
       const float gain = by * step_->gain[k];

@@ -24,9 +24,10 @@ namespace fascia {
 // where N is the gradient of V: what is pressed in at one place swells elsewhere over the same
 // solid.
 //
-// N is that of c, not of r, which a true pressure would take: p N(r) makes points of fine meshes
-// swing across each other, the more the finer they are and the longer N(r) waits to be computed
-// anew. Both are the same but for what the skin has turned away from its flesh.
+// N is that of c, halfway through an interval, not of r, which a true pressure would take: p N(r)
+// makes points of fine meshes swing across each other, the more the finer they are and the longer
+// N(r) waits to be computed anew. Both are the same but for what the skin has turned away from its
+// flesh.
 struct FatPressureModel {
   struct Layer {
     std::uint32_t first, count;  // of `points`
@@ -76,11 +77,15 @@ class FatPressure final : public StepEnd {
   // The model must outlive this.
   explicit FatPressure(const FatPressureModel& model, std::size_t storage);
 
-  // For an interval that starts in the given state. `step` and `around` must outlive it. c and a
-  // are those of its end: how they lie to each other, they have done all the way.
-  void begin(const StepCoefficients& step, const PointSurroundings& around,
-             const VectorArray& carriedToEnd, const VectorArray& anchorAtEnd,
-             const VectorArray& position);
+  // What carries points over an interval: c and a at its start and end, between which they go
+  // evenly.
+  struct Way {
+    const VectorArray &carried, &carriedToEnd;
+    const VectorArray &anchor, &anchorAtEnd;
+    double duration_s;
+  };
+  // For an interval that starts in the given state. `step` must outlive it.
+  void begin(const StepCoefficients& step, const Way& way, const VectorArray& position);
   // N, for the step that comes; 0 for points without fat.
   const VectorArray& force() const { return force_; }
   void stepped(float time_s, VectorArray& position, VectorArray& velocity) override;
@@ -88,22 +93,22 @@ class FatPressure final : public StepEnd {
   std::span<const double> pressures_Pa() const { return pressures_; }
 
  private:
-  // What stays over an interval.
-  struct Start {
-    double reference_m3;  // ΔV − Σ N·(r − a)
-    double answer;        // h Σ G N², m³/Pa
+  // Of an interval.
+  struct Interval {
+    double carried_m3, rate_m3_per_s;  // V_c less V at rest, at the start
+    double answer;                     // h Σ G N², m³/Pa
   };
-  double height_m3(const FatPressureModel::Layer& layer, float time_s,
-                   const VectorArray& position) const;
+  double change_m3(std::size_t layer, float time_s, const VectorArray& position) const;
+  void measureCarried(const Way& way);
   double held_Pa(double pressure_Pa) const;
   void push(const FatPressureModel::Layer& layer, double pressure_Pa);
 
   const FatPressureModel* model_ = nullptr;
   const StepCoefficients* step_ = nullptr;
-  const PointSurroundings* around_ = nullptr;
-  VectorArray area_, force_;        // per storage index: N, m²; p N
+  VectorArray area_, force_;  // per storage index: N, m²; p N
+  VectorArray carried_, carriedVelocity_;
   VectorArray halfway_, meanArea_;  // between a and c; N̄
-  std::vector<Start> starts_;
+  std::vector<Interval> interval_;
   std::vector<double> pressures_;
 };
 
