@@ -86,7 +86,7 @@ class FatPressure final : public StepEnd {
   };
   // For an interval that starts in the given state. `step` must outlive it.
   void begin(const StepCoefficients& step, const Way& way, const VectorArray& position);
-  // N, for the step that comes; 0 for points without fat.
+  // In newtons, for the step that comes; 0 for points without fat.
   const VectorArray& force() const { return force_; }
   void stepped(float time_s, VectorArray& position, VectorArray& velocity) override;
   // At the end of the last step, per layer.
