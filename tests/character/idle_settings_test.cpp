@@ -74,6 +74,15 @@ TEST(IdleSettings, OfASimulatedMeshAreOnlyThoseOfContactWithFlesh) {
   EXPECT_THAT(idlePlaces(def), ElementsAre("/skin/material/restitution", "/simulation/max_step_s"));
 }
 
+TEST(IdleSettings, OfAdaptiveSchemesIsTheFatsPressure) {
+  CharacterDef def = rigged();
+  def.skin->mesh.pose.simulate = true;
+  def.skin->fat.bulk_Pa = 100;
+  EXPECT_THAT(idlePlaces(def), ElementsAre());
+  def.simulation.integrator = "verlet";
+  EXPECT_THAT(idlePlaces(def), ElementsAre("/skin/fat/bulk_Pa"));
+}
+
 TEST(IdleSettings, AndKeysThatAreNeverMetAreToldByTheCharacter) {
   CharacterDef def = test::smallCharacter();
   def.skin->mesh.pose.volume = 0;

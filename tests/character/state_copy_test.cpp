@@ -88,6 +88,16 @@ TEST_P(StateCopies, GoOnLikeTheOriginalInContactWithThemselves) {
   for (int n = 0; n < 2; ++n) expectCopiesToGoOn(Character(def), random, "self-contact");
 }
 
+TEST_P(StateCopies, GoOnLikeTheOriginalUnderFatThatKeepsItsVolume) {
+  Random random(14);
+  CharacterDef def = readCharacterFile(GetParam()).def;
+  if (!def.skin || !def.skin->surface) GTEST_SKIP() << "no surface of solids";
+  def.skin->fat.bulk_Pa = 4e4;
+  const Character character(def);
+  ASSERT_NE(character.skin()->fatPressure(), nullptr);
+  for (int n = 0; n < 2; ++n) expectCopiesToGoOn(character, random, "firm fat");
+}
+
 TEST(StateCopies, OfRigsGoOnLikeTheOriginal) {
   const auto file = assetFile("mesh2motion-cc0/fox-animations.glb");
   if (!file) GTEST_SKIP() << "the shared assets are not here";
@@ -97,6 +107,7 @@ TEST(StateCopies, OfRigsGoOnLikeTheOriginal) {
       CharacterDef def = test::fleshOut(file->string());
       def.skin->mesh.pose.simulate = simulate;
       if (soft) def.flesh.solids.front().soft.emplace();
+      def.skin->fat.bulk_Pa = simulate ? 4e4 : 0;
       expectCopiesToGoOn(Character(def), random, soft ? "soft fox" : "fox");
     }
   }

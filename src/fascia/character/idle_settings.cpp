@@ -22,6 +22,8 @@ constexpr IdleReason kPosedSkin = {"this rig's skin is posed, not simulated",
                                    "set \"pose\": {\"simulate\": true}, or leave it out"};
 constexpr IdleReason kFixedScheme = {"the fast schemes choose their own steps",
                                      "choose an adaptive integrator, or leave it out"};
+constexpr IdleReason kSchemeWithoutFat = {"only the fast schemes step fat with a pressure",
+                                          "set \"integrator\": \"auto\", or leave it out"};
 constexpr IdleReason kNothingSteps = {"nothing of this character is simulated", "leave it out"};
 
 class Idle {
@@ -57,6 +59,9 @@ class Idle {
       rows(skin.mesh.pose, "/skin/pose", {}, kGridPose);
     }
     if (onSurface_) warnOfSurface(skin);
+    const std::string& integrator = def_.simulation.integrator;
+    if (simulated_ && (onRig_ || onSurface_) && integrator != "auto" && integrator != "leapfrog")
+      rows(skin.fat, "/skin/fat", {"bulk_Pa"}, kSchemeWithoutFat);
     warnOfQuantities(skin);
   }
 

@@ -389,7 +389,7 @@ void MeshSkinBuilder::layFat(const VectorArray& skin, const VectorArray& anchors
     solid.push_back(rest_->covered[p] ? rest_->solid[p] : SolidId());
   FatPressureModel model =
       prepareFatPressure({def_.fat.bulk_Pa, storedTriangles(), skin, anchors,
-                          (*quantities_)[SkinQuantity::fat], solid, (*points_)});
+                          (*quantities_)[SkinQuantity::fat], solid, *points_, false});
   if (!model.layers.empty())
     parts_.fatPressure = std::make_shared<FatPressureModel>(std::move(model));
 }

@@ -79,8 +79,10 @@ SkinStepper::SkinStepper(const Skin& skin)
       contact_(skin.makeContact()) {
   for (VectorArray* a : {&nextAnchor_, &target_}) a->resize(skin.topology().storage());
   if (skin.selfContact()) selfContact_ = SelfContact(*skin.selfContact());
-  if (skin.fatPressure())
+  if (skin.fatPressure()) {
     fatPressure_ = FatPressure(*skin.fatPressure(), skin.topology().storage());
+    for (VectorArray* a : {&carried_, &nextCarried_}) a->resize(skin.topology().storage());
+  }
   const std::string& integrator = skin.settings().integrator;
   if (integrator != "auto" && integrator != "leapfrog" && !skin.isCloth())
     ode_ = std::make_unique<OdeSkin>(skin);
@@ -99,6 +101,8 @@ void SkinStepper::advance(SkinPoseSource& poses, double start_s, double end_s, S
   const double span = end_s - start_s;
   FASCIA_ASSERT(span > 0, "time goes on");
   FASCIA_ASSERT(state.position.size() == skin_.topology().storage(), "the state is of this skin");
+  // Anew, so that copies of a state, which have no scratch memory, have the same bits.
+  if (skin_.fatPressure()) placer_->placeAll(poses.at(start_s), carried_);
   const SkinPose end = poses.at(end_s);
   const int intervals = intervalCount(end, span, state);
   for (int i = 0; i < intervals; ++i) {
@@ -208,6 +212,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
                            SkinStats& stats) {
   PointSurroundings& around = state.surroundings;
   placer_->placeAnchors(pose, nextAnchor_);
+  if (skin_.fatPressure()) placer_->placeCarried(pose, nextCarried_);
   const auto rate = static_cast<float>(1 / duration_s);
   // Equations of motion carry by themselves; what rides has been carried.
   const bool carries = ode_ ? state.starting : !coarse_;
@@ -219,6 +224,7 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
     // A posture jump: the skin jumps with the flesh and starts anew from there.
     placeSkin(skin_, pose, state);
     around.anchor = nextAnchor_;
+    carried_ = nextCarried_;
     around.anchorVelocity.fill(0.f);
     around.normal.fill(0.f);
     state.coarseVelocity.fill(0.f);
@@ -248,10 +254,15 @@ void SkinStepper::leapfrog(int steps, double duration_s, SkinState& state, SkinS
   StepInputs inputs{&skin_.points(), &coefficients_, &state.surroundings, nullptr, {}};
   for (int a = 0; a < 3; ++a)
     inputs.gravity[a] = static_cast<float>(skin_.settings().gravity_m_per_s2[a]);
-  if (skin_.fatPressure())
-    inputs.extraForce = &fatPressure_.press(coefficients_, state.surroundings, duration_s,
-                                            state.position, state.velocity);
+  if (skin_.fatPressure()) {
+    fatPressure_.begin(coefficients_,
+                       {carried_, nextCarried_, state.surroundings.anchor, nextAnchor_, duration_s},
+                       state.position);
+    inputs.extraForce = &fatPressure_.force();
+    inputs.stepEnd = &fatPressure_;
+  }
   surface_->run(inputs, steps, state.position, state.velocity);
+  std::swap(carried_, nextCarried_);
   const double h = coefficients_.step_s;
   stats.steps += static_cast<std::uint64_t>(steps);
   stats.step_min_s = std::min(stats.step_min_s, h);

@@ -45,7 +45,8 @@ class SkinStepper final : public SkinRun {
   SelfContact selfContact_;
   FatPressure fatPressure_;
   VectorArray nextAnchor_, target_;
-  FloatArray wholly_;  // ones
+  VectorArray carried_, nextCarried_;  // where fat presses
+  FloatArray wholly_;                  // ones
   std::unique_ptr<OdeSkin> ode_;
 
   // The grid that this one rides on, if any.

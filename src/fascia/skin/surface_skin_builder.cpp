@@ -278,7 +278,7 @@ void SurfaceSkinBuilder::layFat() {
   attachment_->anchors().place(base_.posedFlesh, scratch, anchors);
   FatPressureModel model =
       prepareFatPressure({def_.fat.bulk_Pa, rest_->triangles, restShape(), anchors,
-                          (*quantities_)[SkinQuantity::fat], rest_->solid, *parts_.points});
+                          (*quantities_)[SkinQuantity::fat], rest_->solid, *parts_.points, true});
   if (!model.layers.empty())
     parts_.fatPressure = std::make_shared<FatPressureModel>(std::move(model));
 }

@@ -9,23 +9,34 @@
 namespace fascia {
 namespace {
 
-// A force that is constant over an interval h feeds a swing of frequency ω where
-// tan(ωh/2) > ωh: from (ωh)² = 5.43 on. The pressure fades out up to there; strands so firm hold
-// the fat in place anyway.
-constexpr double kFirmestTissue = 5;
+// Fat that is as thick as the body under it is round ends in a point: a cone has this share of a
+// prism's volume. Thicker fat has no less.
+constexpr double kCone = 1.0 / 3;
 
-// Adds to each point a third of the area vectors of its triangles, m².
-void areaVectors(std::span<const TriangleMembrane::Corners> triangles, const VectorArray& r,
-                 VectorArray& area) {
-  area.fill(0.f);
-  constexpr float kSixth = 1.f / 6;
+using Triangles = std::span<const TriangleMembrane::Corners>;
+
+// Adds to each point `share` of a third of the area vectors of its triangles, m².
+void addAreaVectors(Triangles triangles, const VectorArray& r, float share, VectorArray& area) {
+  const float sixth = share / 6;
   for (const auto& [a, b, c] : triangles) {
     const float x1 = r.x[b] - r.x[a], y1 = r.y[b] - r.y[a], z1 = r.z[b] - r.z[a];
     const float x2 = r.x[c] - r.x[a], y2 = r.y[c] - r.y[a], z2 = r.z[c] - r.z[a];
-    const float x = kSixth * (y1 * z2 - z1 * y2), y = kSixth * (z1 * x2 - x1 * z2),
-                z = kSixth * (x1 * y2 - y1 * x2);
+    const float x = sixth * (y1 * z2 - z1 * y2), y = sixth * (z1 * x2 - x1 * z2),
+                z = sixth * (x1 * y2 - y1 * x2);
     for (const std::uint32_t k : {a, b, c}) area.x[k] += x, area.y[k] += y, area.z[k] += z;
   }
+}
+
+// N̄ between two shapes; `halfway` is scratch of their size.
+void meanAreaVectors(Triangles triangles, const VectorArray& inner, const VectorArray& outer,
+                     VectorArray& halfway, VectorArray& mean) {
+  mean.fill(0.f);
+  addAreaVectors(triangles, inner, 1.f / 6, mean);
+  addAreaVectors(triangles, outer, 1.f / 6, mean);
+  for (const auto axis : VectorArray::kAxes)
+    for (std::size_t k = 0; k < halfway.size(); ++k)
+      (halfway.*axis)[k] = 0.5f * ((inner.*axis)[k] + (outer.*axis)[k]);
+  addAreaVectors(triangles, halfway, 4.f / 6, mean);
 }
 
 // N·(to − from)
@@ -35,25 +46,54 @@ float heightOver(const VectorArray& area, const VectorArray& from, const VectorA
          area.z[k] * (to.z[k] - from.z[k]);
 }
 
+// The same, over what has moved from `from` with its velocity.
+float heightOver(const VectorArray& area, const VectorArray& from, const VectorArray& velocity,
+                 float time_s, const VectorArray& to, std::size_t k) {
+  return area.x[k] * (to.x[k] - (from.x[k] + time_s * velocity.x[k])) +
+         area.y[k] * (to.y[k] - (from.y[k] + time_s * velocity.y[k])) +
+         area.z[k] * (to.z[k] - (from.z[k] + time_s * velocity.z[k]));
+}
+
 float square(const VectorArray& area, std::size_t k) {
   return area.x[k] * area.x[k] + area.y[k] * area.y[k] + area.z[k] * area.z[k];
 }
 
-// What changes nowhere in a run. False for a layer that has no volume or cannot move.
-bool measureLayer(const FatPressureInput& input, const VectorArray& area,
-                  const std::vector<std::uint32_t>& points, FatPressureModel::Layer& layer) {
-  double mobility = 0, stiffness = 0;
-  for (std::size_t i = layer.first; i < points.size(); ++i) {
-    const std::size_t k = points[i];
-    const double square_m4 = square(area, k), mass = input.points.mass[k];
-    layer.volume_m3 += std::sqrt(square_m4) * double{input.fat[k]};
-    layer.rest_m3 += double{heightOver(area, input.anchor, input.rest, k)};
-    mobility += square_m4 / mass;
-    stiffness += square_m4 / (mass * mass) * double{input.points.tissueStiffness[k]};
+// Moves points inward by the thickness of their fat.
+void takeFatAway(const FloatArray& fat, const VectorArray& area, VectorArray& r) {
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const float length = std::sqrt(square(area, k));
+    if (!(length > 0)) continue;
+    const float by = fat[k] / length;
+    for (const auto axis : VectorArray::kAxes) (r.*axis)[k] -= by * (area.*axis)[k];
   }
-  if (!(layer.volume_m3 > 0 && mobility > 0)) return false;
-  layer.tissueRate2_per_s2 = stiffness / mobility;
-  return true;
+}
+
+std::span<const std::uint32_t> pointsOf(const FatPressureModel& model,
+                                        const FatPressureModel::Layer& layer) {
+  return std::span(model.points).subspan(layer.first, layer.count);
+}
+
+void measureFat(const FatPressureInput& input, FatPressureModel& model) {
+  const VectorArray& rest = input.rest;
+  VectorArray area(rest.size()), halfway(rest.size()), mean(rest.size());
+  VectorArray inner = rest;
+  addAreaVectors(model.triangles, rest, 1, area);
+  takeFatAway(input.fat, area, inner);
+  meanAreaVectors(model.triangles, inner, rest, halfway, mean);
+  for (FatPressureModel::Layer& layer : model.layers) {
+    for (const std::uint32_t k : pointsOf(model, layer)) {
+      const double prism = std::sqrt(double{square(area, k)}) * double{input.fat[k]};
+      layer.volume_m3 += std::max(double{heightOver(mean, inner, rest, k)}, kCone * prism);
+    }
+  }
+  std::erase_if(model.layers, [](const auto& layer) { return !(layer.volume_m3 > 0); });
+}
+
+double volumeBetween(const VectorArray& mean, const VectorArray& inner, const VectorArray& outer,
+                     std::span<const std::uint32_t> points) {
+  double sum = 0;
+  for (const std::uint32_t k : points) sum += double{heightOver(mean, inner, outer, k)};
+  return sum;
 }
 
 }  // namespace
@@ -63,80 +103,126 @@ FatPressureModel prepareFatPressure(const FatPressureInput& input) {
                 "every point has a solid or none");
   FatPressureModel model;
   model.bulk_Pa = input.bulk_Pa;
-  VectorArray area(input.rest.size());
-  areaVectors(input.triangles, input.rest, area);
-
-  const auto hasFat = [&](std::size_t k) {
-    return input.solid[k].valid() && input.fat[k] > 0 && input.points.free[k] > 0;
-  };
-  std::vector<std::uint32_t> sorted;
-  for (std::size_t k = 0; k < input.solid.size(); ++k)
-    if (hasFat(k)) sorted.push_back(static_cast<std::uint32_t>(k));
-  std::stable_sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return input.solid[a].index() < input.solid[b].index();
-  });
+  model.reachesAnchors = input.reachesAnchors;
 
   std::vector<char> inLayer(input.rest.size(), 0);
-  for (std::size_t i = 0, j; i < sorted.size(); i = j) {
-    for (j = i + 1; j < sorted.size() && input.solid[sorted[j]] == input.solid[sorted[i]];) ++j;
-    const auto first = static_cast<std::uint32_t>(model.points.size());
-    FatPressureModel::Layer layer{first, static_cast<std::uint32_t>(j - i), 0, 0, 0};
-    model.points.insert(model.points.end(), sorted.begin() + static_cast<std::ptrdiff_t>(i),
-                        sorted.begin() + static_cast<std::ptrdiff_t>(j));
-    if (!measureLayer(input, area, model.points, layer)) {
-      model.points.resize(first);
-      continue;
-    }
-    model.layers.push_back(layer);
-    for (std::size_t p = first; p < model.points.size(); ++p) inLayer[model.points[p]] = 1;
+  for (std::size_t k = 0; k < input.solid.size(); ++k)
+    inLayer[k] = input.solid[k].valid() && input.fat[k] > 0 && input.points.free[k] > 0;
+  for (std::size_t k = 0; k < input.solid.size(); ++k)
+    if (inLayer[k]) model.points.push_back(static_cast<std::uint32_t>(k));
+  std::stable_sort(model.points.begin(), model.points.end(),
+                   [&](auto a, auto b) { return input.solid[a].index() < input.solid[b].index(); });
+  for (std::size_t i = 0; i < model.points.size(); ++i) {
+    if (i == 0 || input.solid[model.points[i]] != input.solid[model.points[i - 1]])
+      model.layers.push_back({static_cast<std::uint32_t>(i), 0, 0, 0});
+    ++model.layers.back().count;
   }
   std::copy_if(input.triangles.begin(), input.triangles.end(), std::back_inserter(model.triangles),
                [&](const TriangleMembrane::Corners& t) {
                  return inLayer[t[0]] || inLayer[t[1]] || inLayer[t[2]];
                });
+  measureFat(input, model);
+  if (!model.reachesAnchors) return model;
+  VectorArray halfway(input.rest.size()), mean(input.rest.size());
+  meanAreaVectors(model.triangles, input.anchor, input.rest, halfway, mean);
+  for (FatPressureModel::Layer& layer : model.layers)
+    layer.rest_m3 = volumeBetween(mean, input.anchor, input.rest, pointsOf(model, layer));
   return model;
 }
 
 FatPressure::FatPressure(const FatPressureModel& model, std::size_t storage)
-    : model_(&model), area_(storage), force_(storage), pressures_(model.layers.size()) {}
-
-double FatPressure::pressure(const FatPressureModel::Layer& layer, const StepCoefficients& step,
-                             const PointSurroundings& around, double duration_s,
-                             const VectorArray& position, const VectorArray& velocity) const {
-  double volume_m3 = 0, rate_m3_per_s = 0, answer = 0;
-  FASCIA_ASSERT(layer.volume_m3 > 0 && duration_s > 0 && step.step_s > 0, "a layer has a volume");
-  for (std::size_t i = layer.first; i < std::size_t{layer.first} + layer.count; ++i) {
-    const std::size_t k = model_->points[i];
-    volume_m3 += double{heightOver(area_, around.anchor, position, k)};
-    rate_m3_per_s += double{heightOver(area_, around.anchorVelocity, velocity, k)};
-    answer += double{square(area_, k) * step.gain[k]};
-  }
-  // d²ΔV/dt² = p Σ N²/M', and the step's gain is h/M'.
-  const double h2 = duration_s * duration_s,
-               stiffness_Pa_per_m3 = model_->bulk_Pa / layer.volume_m3;
-  const double alpha = h2 * stiffness_Pa_per_m3 * answer / double{step.step_s};
-  const double firm = std::min(1.0, h2 * layer.tissueRate2_per_s2 / kFirmestTissue);
-  const double end_m3 = volume_m3 - layer.rest_m3 + duration_s * rate_m3_per_s;
-  const double p = -stiffness_Pa_per_m3 * end_m3 * (1 - firm) / (1 + alpha);
-  return std::clamp(p, -model_->bulk_Pa, model_->bulk_Pa);
+    : model_(&model), interval_(model.layers.size()), pressures_(model.layers.size()) {
+  for (VectorArray* a : {&area_, &force_, &carried_, &carriedVelocity_, &halfway_, &meanArea_})
+    a->resize(storage);
 }
 
-const VectorArray& FatPressure::press(const StepCoefficients& step, const PointSurroundings& around,
-                                      double duration_s, const VectorArray& position,
-                                      const VectorArray& velocity) {
-  areaVectors(model_->triangles, position, area_);
-  FASCIA_ASSERT(position.size() == area_.size() && velocity.size() == area_.size(),
-                "the state is of this skin");
-  for (std::size_t l = 0; l < model_->layers.size(); ++l) {
-    const FatPressureModel::Layer& layer = model_->layers[l];
-    pressures_[l] = pressure(layer, step, around, duration_s, position, velocity);
-    const auto p = static_cast<float>(pressures_[l]);
-    for (std::size_t i = layer.first; i < std::size_t{layer.first} + layer.count; ++i) {
-      const std::size_t k = model_->points[i];
-      force_.x[k] = p * area_.x[k], force_.y[k] = p * area_.y[k], force_.z[k] = p * area_.z[k];
+void FatPressure::begin(const StepCoefficients& step, const Way& way, const VectorArray& position) {
+  const std::size_t count = area_.size();
+  FASCIA_ASSERT(step.step_s > 0 && way.duration_s > 0, "time goes on");
+  FASCIA_ASSERT(
+      position.size() == count && way.carried.size() == count && way.carriedToEnd.size() == count,
+      "the state is of this skin, and so is what carries it");
+  step_ = &step;
+  carried_ = way.carried;
+  const auto rate = static_cast<float>(1 / way.duration_s);
+  for (const auto axis : VectorArray::kAxes) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const float by = (way.carriedToEnd.*axis)[k] - (way.carried.*axis)[k];
+      (carriedVelocity_.*axis)[k] = rate * by;
+      (halfway_.*axis)[k] = (way.carried.*axis)[k] + 0.5f * by;
     }
   }
-  return force_;
+  area_.fill(0.f);
+  addAreaVectors(model_->triangles, halfway_, 1, area_);
+  measureCarried(way);
+  for (std::size_t l = 0; l < model_->layers.size(); ++l) {
+    const FatPressureModel::Layer& layer = model_->layers[l];
+    double answer = 0;
+    for (const std::uint32_t k : pointsOf(*model_, layer))
+      answer += double{square(area_, k) * step.gain[k]};
+    interval_[l].answer = double{step.step_s} * answer;
+    pressures_[l] = held_Pa(-model_->bulk_Pa / layer.volume_m3 * change_m3(l, 0, position));
+    push(layer, pressures_[l]);
+  }
+}
+
+// V_c and its rate, where it counts.
+void FatPressure::measureCarried(const Way& way) {
+  std::fill(interval_.begin(), interval_.end(), Interval{0, 0, 0});
+  if (!model_->reachesAnchors) return;
+  meanAreaVectors(model_->triangles, way.anchor, way.carried, halfway_, meanArea_);
+  for (std::size_t l = 0; l < model_->layers.size(); ++l)
+    interval_[l].carried_m3 =
+        volumeBetween(meanArea_, way.anchor, way.carried, pointsOf(*model_, model_->layers[l])) -
+        model_->layers[l].rest_m3;
+  meanAreaVectors(model_->triangles, way.anchorAtEnd, way.carriedToEnd, halfway_, meanArea_);
+  for (std::size_t l = 0; l < model_->layers.size(); ++l) {
+    const double end_m3 = volumeBetween(meanArea_, way.anchorAtEnd, way.carriedToEnd,
+                                        pointsOf(*model_, model_->layers[l])) -
+                          model_->layers[l].rest_m3;
+    interval_[l].rate_m3_per_s = (end_m3 - interval_[l].carried_m3) / way.duration_s;
+  }
+}
+
+// ΔV
+double FatPressure::change_m3(std::size_t layer, float time_s, const VectorArray& position) const {
+  double sum = interval_[layer].carried_m3 + double{time_s} * interval_[layer].rate_m3_per_s;
+  for (const std::uint32_t k : pointsOf(*model_, model_->layers[layer]))
+    sum += double{heightOver(area_, carried_, carriedVelocity_, time_s, position, k)};
+  return sum;
+}
+
+void FatPressure::stepped(float time_s, VectorArray& position, VectorArray& velocity) {
+  FASCIA_ASSERT(step_, "begin() comes first");
+  for (std::size_t l = 0; l < model_->layers.size(); ++l) {
+    const FatPressureModel::Layer& layer = model_->layers[l];
+    const double stiffness_Pa_per_m3 = model_->bulk_Pa / layer.volume_m3;
+    const double wanted_Pa = -stiffness_Pa_per_m3 * change_m3(l, time_s, position);
+    const double before_Pa = pressures_[l];
+    pressures_[l] = held_Pa(before_Pa + (wanted_Pa - before_Pa) /
+                                            (1 + stiffness_Pa_per_m3 * interval_[l].answer));
+    const auto by = static_cast<float>(pressures_[l] - before_Pa);
+    for (const std::uint32_t k : pointsOf(*model_, layer)) {
+      const float gain = by * step_->gain[k];
+      for (const auto axis : VectorArray::kAxes) {
+        const float change = gain * (area_.*axis)[k];
+        (velocity.*axis)[k] += change;
+        (position.*axis)[k] += step_->step_s * change;
+      }
+    }
+    push(layer, pressures_[l]);
+  }
+}
+
+// No layer is pressed to nothing or to more than twice its volume.
+double FatPressure::held_Pa(double pressure_Pa) const {
+  return std::clamp(pressure_Pa, -model_->bulk_Pa, model_->bulk_Pa);
+}
+
+void FatPressure::push(const FatPressureModel::Layer& layer, double pressure_Pa) {
+  const auto p = static_cast<float>(pressure_Pa);
+  for (const std::uint32_t k : pointsOf(*model_, layer))
+    for (const auto axis : VectorArray::kAxes) (force_.*axis)[k] = p * (area_.*axis)[k];
 }
 
 }  // namespace fascia

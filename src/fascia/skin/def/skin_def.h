@@ -63,7 +63,8 @@ constexpr auto tunables(const SkinFatDef*) {
       tunable(&F::compressible, "compressible", "", {0, 0.95},
               "No effect: of older files, whose fat gave way"),
       tunable(&F::bulk_Pa, "bulk_Pa", "Pa", {0, 1e5},
-              "Of a simulated rig: resistance of each solid's fat to a change of its volume")};
+              "Of surfaces of solids and simulated rigs: pressure of each solid's fat per share of "
+              "its volume that it has lost. 0: none")};
 }
 
 struct SkinTissueDef {

@@ -217,6 +217,9 @@ void MeshStepper::run(const StepInputs& inputs, int firstStep, int steps, Vector
        velocity);
     });
     std::swap(quads_, nextQuads_);
+    if (!inputs.stepEnd) continue;
+    inputs.stepEnd->stepped(time_s, position, velocity);
+    HWY_DYNAMIC_DISPATCH(toQuadsImpl)(position, layout_.pointCount, quads_.data());
   }
 }
 

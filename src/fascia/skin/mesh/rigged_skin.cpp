@@ -36,6 +36,9 @@ class MeshPlacer final : public PointPlacer {
   }
   void placeAll(const SkinPose& pose, VectorArray& out) override {
     evaluate(pose);
+    placeCarried(pose, out);
+  }
+  void placeCarried(const SkinPose&, VectorArray& out) override {
     for (const auto axis : VectorArray::kAxes)
       std::copy_n((points_.*axis).begin(), attachment_.pointCount(), (out.*axis).begin());
   }

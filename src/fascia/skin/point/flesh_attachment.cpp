@@ -18,6 +18,7 @@ class FleshPlacer final : public PointPlacer {
     for (const FleshAttachment::Fixed& f : attachment_.fixed())
       setPoint(out, f.point, pose.joints[f.joint.index()].point(f.position_joint));
   }
+  void placeCarried(const SkinPose& pose, VectorArray& out) override { placeAll(pose, out); }
   void placeAll(const SkinPose& pose, VectorArray& out) override {
     attachment_.placements().place(*pose.field, scratch_, out);
     placeFixed(pose, out);

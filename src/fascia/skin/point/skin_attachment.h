@@ -24,6 +24,8 @@ class PointPlacer {
   virtual void placeAnchors(const SkinPose& pose, VectorArray& out) = 0;
   // The points that are never simulated. The pose is the one that another of these calls had last.
   virtual void placeFixed(const SkinPose& pose, VectorArray& out) = 0;
+  // Every point where the rest shape goes with the pose that placeAnchors had last.
+  virtual void placeCarried(const SkinPose& pose, VectorArray& out) = 0;
   // Every point where the rest shape goes with the pose.
   virtual void placeAll(const SkinPose& pose, VectorArray& out) = 0;
 };

@@ -20,7 +20,7 @@ class SurfaceStepper {
   // All elastic forces, N; overwrites `force`.
   virtual void forces(const VectorArray& position, VectorArray& force) = 0;
   // The stabilised leapfrog (leapfrog.h) over one interval. A grid takes no
-  // inputs.extraForce.
+  // inputs.extraForce and no inputs.stepEnd.
   virtual void run(const StepInputs& inputs, int steps, VectorArray& position,
                    VectorArray& velocity) = 0;
 };
