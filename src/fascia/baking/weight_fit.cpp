@@ -1,6 +1,7 @@
 #include <fascia/baking/weight_fit.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -39,16 +40,18 @@ void sortUnique(std::vector<T>& values) {
 
 // Heaviest first; equal ones by bone, so that the order is always the same.
 PointWeights packed(std::span<const std::size_t> bones, const CandidateVector& w) {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t c = 0; c < bones.size(); ++c) {
-    const double weight = w[static_cast<Eigen::Index>(c)];
-    if (weight > 1e-7) order.emplace_back(-weight, bones[c]);
-  }
-  std::sort(order.begin(), order.end());
+  std::array<std::pair<double, std::size_t>, kMostNonZero> order;
+  std::size_t count = 0;
   double sum = 0;
-  for (const auto& [negative, bone] : order) sum -= negative;
+  for (std::size_t c = 0; c < bones.size() && count < order.size(); ++c) {
+    const double weight = w[static_cast<Eigen::Index>(c)];
+    if (weight <= 1e-7) continue;
+    order[count++] = {-weight, bones[c]};
+    sum += weight;
+  }
+  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
   PointWeights out;
-  for (std::size_t k = 0; k < order.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     out.joint[k] = static_cast<std::uint16_t>(order[k].second);
     out.weight[k] = static_cast<float>(-order[k].first / sum);
   }
@@ -195,6 +198,7 @@ void WeightFit::offerBones(const Task& task, std::size_t point, Scratch& scratch
 PointWeights WeightFit::fitPoint(const Task& task, std::size_t point, Scratch& scratch) const {
   offerBones(task, point, scratch);
   const auto count = static_cast<Eigen::Index>(scratch.offers.size());
+  const double stiffness = static_cast<double>(problem_.frameCount) * stiffness_m2_;
   scratch.G.resize(count, count);
   scratch.g = scratch.start = CandidateVector::Zero(count);
   scratch.bones.clear();
@@ -205,14 +209,17 @@ PointWeights WeightFit::fitPoint(const Task& task, std::size_t point, Scratch& s
     scratch.joints.push_back(task.jointOf(left.bone, rigBoneCount_));
     scratch.start[a] = weightOf(task.before[point], left.bone);
     for (Eigen::Index b = 0; b <= a; ++b) {
-      const Offer& right = scratch.offers[static_cast<std::size_t>(b)];
+      const auto other = static_cast<std::size_t>(b);
+      const Offer& right = scratch.offers[other];
       const double product = moments_.between(left.bone, right.bone, scratch.square);
+      const double shared = scratch.joints[other] == scratch.joints.back() ? stiffness : 0;
       scratch.G(a, b) = scratch.G(b, a) =
-          product - left.withTarget - right.withTarget + scratch.own;
+          product - left.withTarget - right.withTarget + scratch.own + shared;
     }
+    // ½ λ Σ_j (Σ w of joint j and its helpers - rig's weight of j)².
+    scratch.g[a] = stiffness * weightOf(rig_[point], scratch.joints.back());
   }
   addNeighborTerm(task, point, scratch);
-  addRigTerm(point, scratch);
   return packed(scratch.bones, solveOnSimplex(scratch.G, scratch.g, influences_, scratch.start));
 }
 
@@ -229,19 +236,6 @@ void WeightFit::addNeighborTerm(const Task& task, std::size_t point, Scratch& sc
     const auto k = static_cast<Eigen::Index>(c);
     scratch.G(k, k) += lambda;
     scratch.g[k] += lambda * mean;
-  }
-}
-
-// ½ λ Σ_j (Σ w of joint j and its helpers - rig's weight of j)².
-void WeightFit::addRigTerm(std::size_t point, Scratch& scratch) const {
-  const double lambda = static_cast<double>(problem_.frameCount) * stiffness_m2_;
-  const std::vector<std::size_t>& joints = scratch.joints;
-  for (std::size_t a = 0; a < joints.size(); ++a) {
-    const auto r = static_cast<Eigen::Index>(a);
-    scratch.g[r] += lambda * weightOf(rig_[point], joints[a]);
-    for (std::size_t b = 0; b < joints.size(); ++b) {
-      if (joints[b] == joints[a]) scratch.G(r, static_cast<Eigen::Index>(b)) += lambda;
-    }
   }
 }
 

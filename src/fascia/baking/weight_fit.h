@@ -49,7 +49,6 @@ class WeightFit {
   bool mayFollow(std::size_t point, const HelperPlace& helper) const;
   void offerBones(const Task& task, std::size_t point, Scratch& scratch) const;
   void addNeighborTerm(const Task& task, std::size_t point, Scratch& scratch) const;
-  void addRigTerm(std::size_t point, Scratch& scratch) const;
   Offer offerOf(std::size_t bone, const Eigen::Vector4d& p, const Scratch& scratch) const;
   void findNearbyJoints();
   void findJointOffers();
