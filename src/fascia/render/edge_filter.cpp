@@ -1,6 +1,7 @@
 #include <fascia/render/edge_filter.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -73,9 +74,9 @@ class EdgeWalk {
     const int bendAlong =
         2 * std::abs(w + e - 2 * here_) + std::abs(nw + ne - 2 * n) + std::abs(sw + se - 2 * s);
     level_ = bendDown >= bendAlong;
-    const int before1 = level_ ? n : w, after1 = level_ ? s : e;
-    side_ = std::abs(before1 - here_) >= std::abs(after1 - here_) ? -1 : 1;
-    const int across = side_ < 0 ? before1 : after1;
+    const int first = level_ ? n : w, second = level_ ? s : e;
+    side_ = std::abs(first - here_) >= std::abs(second - here_) ? -1 : 1;
+    const int across = side_ < 0 ? first : second;
     step_ = std::abs(across - here_);
     sum_ = here_ + across;
   }
@@ -152,7 +153,7 @@ void smoothRow(const Before& before, int y, const PixelBox& box, std::vector<std
     if (!marks[static_cast<std::size_t>(x)]) continue;
     const Eigen::Array3f color = smoothedColor(before, box, x, y);
     std::uint8_t* const out = picture.rgba.data() + 4 * (rowStart + static_cast<std::size_t>(x));
-    for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint8_t>(color[k] + 0.5f);
+    for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint8_t>(std::lround(color[k]));
   }
 }
 
