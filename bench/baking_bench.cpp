@@ -16,22 +16,22 @@ namespace {
 
 constexpr std::size_t kFrames = 60;
 
-// The human of the shared assets, walking, with joints that bulge and a skin that ripples: more
-// than any simulation asks of a bake.
-struct RipplingHuman {
+// A rig of the shared assets in one of its motions, with joints that bulge and a skin that ripples:
+// more than any simulation asks of a bake.
+struct RipplingRig {
   RiggedModel model;
   std::vector<std::vector<Transform>> bones;
   PointFrames frames;
 
-  explicit RipplingHuman(const std::string& path) : model(readRiggedModel(path)) {
+  RipplingRig(const std::string& path, const std::string& motion) : model(readRiggedModel(path)) {
     DualQuaternionBlend blend(model);
-    std::size_t walk = 0;
-    while (walk + 1 < model.motions.size() && model.motions[walk].name != "Walk_Loop") ++walk;
+    std::size_t number = 0;
+    while (number + 1 < model.motions.size() && model.motions[number].name != motion) ++number;
     std::vector<Transform> world;
     std::vector<Eigen::Vector3f> normals;
     for (std::size_t f = 0; f < kFrames; ++f) {
       const double time = static_cast<double>(f) / 60;
-      poseRig(model, static_cast<int>(walk), time, world);
+      poseRig(model, static_cast<int>(number), time, world);
       restToFrame(model, world, bones.emplace_back());
       std::vector<Eigen::Vector3f>& points = frames.emplace_back(model.points_m.size());
       blend.deform(bones.back(), points);
@@ -45,34 +45,58 @@ struct RipplingHuman {
 };
 
 // Null without the shared assets.
-const RipplingHuman* human() {
-  static const std::unique_ptr<RipplingHuman> kHuman = [] {
-    const char* given = std::getenv("FASCIA_ASSETS");
-    const std::filesystem::path folder =
-        given ? std::filesystem::path(given)
-              : std::filesystem::path(FASCIA_SOURCE_DIR) / "../shared/assets";
-    const std::filesystem::path file = folder / "mesh2motion-cc0/human-base-animations.glb";
-    return std::filesystem::exists(file) ? std::make_unique<RipplingHuman>(file.string()) : nullptr;
-  }();
+std::unique_ptr<RipplingRig> ripplingRig(const std::string& name, const std::string& motion) {
+  const char* given = std::getenv("FASCIA_ASSETS");
+  const std::filesystem::path folder =
+      given ? std::filesystem::path(given)
+            : std::filesystem::path(FASCIA_SOURCE_DIR) / "../shared/assets";
+  const std::filesystem::path file = folder / "mesh2motion-cc0" / (name + "-animations.glb");
+  return std::filesystem::exists(file) ? std::make_unique<RipplingRig>(file.string(), motion)
+                                       : nullptr;
+}
+
+const RipplingRig* human() {
+  static const std::unique_ptr<RipplingRig> kHuman = ripplingRig("human-base", "Walk_Loop");
   return kHuman.get();
 }
 
-void decomposeHuman(benchmark::State& state) {
-  const RipplingHuman* h = human();
-  if (!h) return state.SkipWithError("the shared assets are not here");
+const RipplingRig* fox() {
+  static const std::unique_ptr<RipplingRig> kFox = ripplingRig("fox", "Death");
+  return kFox.get();
+}
+
+void decompose(benchmark::State& state, const RipplingRig* rig,
+               const DecompositionOptions& options) {
+  if (!rig) return state.SkipWithError("the shared assets are not here");
   const ThreadLimit one(1);
+  for (auto _ : state) {
+    const SkinningDecomposition found =
+        decomposeSkinning(rig->model.points_m, rig->model.triangles, rig->model.weights, rig->bones,
+                          rig->frames, options);
+    state.counters["rms_percent"] = 100 * found.rms_m / rig->model.height_m();
+    state.counters["max_percent"] = 100 * found.max_m / rig->model.height_m();
+    state.counters["helpers"] = static_cast<double>(found.helpers.size());
+  }
+}
+
+DecompositionOptions withHelpers(benchmark::State& state) {
   DecompositionOptions options;
   options.helperBones = static_cast<int>(state.range(0));
-  for (auto _ : state) {
-    const SkinningDecomposition found = decomposeSkinning(
-        h->model.points_m, h->model.triangles, h->model.weights, h->bones, h->frames, options);
-    state.counters["rms_percent"] = 100 * found.rms_m / h->model.height_m();
-  }
+  return options;
+}
+
+void decomposeHuman(benchmark::State& state) {
+  decompose(state, human(), withHelpers(state));
 }
 BENCHMARK(decomposeHuman)->Arg(0)->Arg(20)->Arg(40)->Iterations(1)->Unit(benchmark::kSecond);
 
+void decomposeFox(benchmark::State& state) {
+  decompose(state, fox(), withHelpers(state));
+}
+BENCHMARK(decomposeFox)->Arg(20)->Arg(50)->Arg(100)->Iterations(1)->Unit(benchmark::kSecond);
+
 void findHumanMorphs(benchmark::State& state) {
-  const RipplingHuman* h = human();
+  const RipplingRig* h = human();
   if (!h) return state.SkipWithError("the shared assets are not here");
   const ThreadLimit one(1);
   MorphOptions options;

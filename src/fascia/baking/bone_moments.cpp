@@ -1,51 +1,77 @@
 #include <fascia/baking/bone_moments.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include <fascia/base/parallel.h>
 
 namespace fascia {
-namespace {
 
-using Eigen::Index;
+BoneMoments::BoneMoments(const SkinningProblem& problem, const BoneTracks& rigBones)
+    : problem_(problem),
+      frames_(problem.frameCount),
+      rows_((3 * frames_ + kRowBlock - 1) / kRowBlock * kRowBlock),
+      rigBoneCount_(rigBones.boneCount()),
+      middle_m_(rows_, 0.0) {
+  for (std::size_t i = 0; i < problem.pointCount(); ++i) {
+    const float* const x = problem.target(i, 0).data();
+    for (std::size_t r = 0; r < 3 * frames_; ++r) middle_m_[r] += static_cast<double>(x[r]);
+  }
+  for (double& m : middle_m_) m /= static_cast<double>(problem.pointCount());
+  stack(rigBones, 0);
+}
 
-constexpr std::size_t kBonesPerTask = 16;  // large enough for a product of matrices to be worth it
+void BoneMoments::update(const BoneTracks& bones) {
+  assert(bones.boneCount() >= rigBoneCount_ && bones.frameCount() == frames_);
+  stack(bones, rigBoneCount_);
+}
 
-}  // namespace
-
-BoneMoments::BoneMoments(const SkinningProblem& problem, const BoneTracks& bones)
-    : problem_(problem), frames_(problem.frameCount), middle_m_(frames_, Vec3::Zero()) {
-  parallelFor(frames_, [&](std::size_t f) {
-    for (std::size_t i = 0; i < problem.pointCount(); ++i) {
-      middle_m_[f] += problem.target(i, f).cast<double>();
-    }
-    middle_m_[f] /= static_cast<double>(problem.pointCount());
-  });
-  stacked_.resize(3 * static_cast<Index>(frames_), col(bones.boneCount()));
-  parallelFor(bones.boneCount(), [&](std::size_t b) {
+// Every bone has its products with those before it: the same sums on any number of threads.
+void BoneMoments::stack(const BoneTracks& bones, std::size_t first) {
+  const std::size_t count = bones.boneCount();
+  stacked_.resize(4 * rows_ * count, 0.0);
+  pairs_.resize(pairOf(0, count));
+  parallelFor(count - first, [&](std::size_t k) {
+    double* const columns = bone(first + k);
     for (std::size_t f = 0; f < frames_; ++f) {
-      auto block = stacked_.block<3, 4>(3 * static_cast<Index>(f), col(b));
-      block.leftCols<3>() = bones.at(b, f).rotation;
-      block.col(3) = bones.at(b, f).translation_m - middle_m_[f];
+      const Transform& t = bones.at(first + k, f);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t row = 3 * f + axis;
+        const auto a = static_cast<Eigen::Index>(axis);
+        for (std::size_t c = 0; c < 3; ++c)
+          columns[c * rows_ + row] = t.rotation(a, static_cast<Eigen::Index>(c));
+        columns[3 * rows_ + row] = t.translation_m[a] - middle_m_[row];
+      }
     }
   });
-  // Every task has all rows of its own columns: the same sums on any number of threads.
-  gram_.resize(stacked_.cols(), stacked_.cols());
-  const std::size_t tasks = (bones.boneCount() + kBonesPerTask - 1) / kBonesPerTask;
-  parallelFor(tasks, [&](std::size_t t) {
-    const Index first = col(t * kBonesPerTask);
-    const Index count = std::min(col(kBonesPerTask), stacked_.cols() - first);
-    gram_.middleCols(first, count).noalias() =
-        stacked_.transpose() * stacked_.middleCols(first, count);
+  parallelFor(count - first, [&](std::size_t k) {
+    const std::size_t b = first + k;
+    for (std::size_t a = 0; a <= b; ++a) pairs_[pairOf(a, b)] = productOf(bone(a), bone(b), rows_);
   });
 }
 
-void BoneMoments::target(std::size_t point, Eigen::VectorXd& out) const {
-  out.resize(3 * static_cast<Index>(frames_));
-  for (std::size_t f = 0; f < frames_; ++f) {
-    out.segment<3>(3 * static_cast<Index>(f)) =
-        problem_.target(point, f).cast<double>() - middle_m_[f];
-  }
+void BoneMoments::target(std::size_t point, std::vector<double>& out) const {
+  out.resize(rows_);
+  const float* const x = problem_.target(point, 0).data();
+  for (std::size_t r = 0; r < 3 * frames_; ++r) out[r] = static_cast<double>(x[r]) - middle_m_[r];
+  std::fill(out.begin() + static_cast<std::ptrdiff_t>(3 * frames_), out.end(), 0.0);
+}
+
+double BoneMoments::withTarget(std::size_t b, const Eigen::Vector4d& p,
+                               const std::vector<double>& target) const {
+  const std::array<double, 4> sums = columnsTimes(bone(b), target.data(), rows_);
+  return Eigen::Map<const Eigen::Vector4d>(sums.data()).dot(p);
+}
+
+Quadratic BoneMoments::squareOf(const Eigen::Vector4d& p) {
+  return {p[0] * p[0], p[1] * p[1], p[2] * p[2], p[3] * p[3], p[0] * p[1],
+          p[0] * p[2], p[0] * p[3], p[1] * p[2], p[1] * p[3], p[2] * p[3]};
+}
+
+double BoneMoments::between(std::size_t a, std::size_t b, const Quadratic& p) const {
+  const Quadratic& product = pairs_[pairOf(std::min(a, b), std::max(a, b))];
+  using Ten = Eigen::Map<const Eigen::Matrix<double, 10, 1>>;
+  return Ten(product.data()).dot(Ten(p.data()));
 }
 
 }  // namespace fascia

@@ -125,10 +125,17 @@ void HelperMoments::fitFrame(std::size_t frame, int sweeps, std::vector<Sums>& w
       wanted[h].noalias() -= link.moment * matrix.transpose();
     }
   }
+  // A helper whose neighbours have hardly moved since it was fitted stays where it is.
+  std::vector<char> due(helpers_.size());
+  for (std::size_t h = 0; h < helpers_.size(); ++h) due[h] = helpers_[h].uses.empty() ? 0 : 1;
   for (int s = 0; s < sweeps; ++s) {
     bool moved = false;
     for (std::size_t h = 0; h < helpers_.size(); ++h) {
-      if (!helpers_[h].uses.empty() && refit(h, frame, wanted[h], bones)) moved = true;
+      if (!due[h]) continue;
+      due[h] = 0;
+      if (!refit(h, frame, wanted[h], bones)) continue;
+      for (const Link& link : helpers_[h].helpers) due[link.bone - firstHelper_] = 1;
+      moved = true;
     }
     if (!moved) break;
   }

@@ -45,7 +45,7 @@ HelperSearch::HelperSearch(const SkinningProblem& problem, std::vector<FrameRang
       rig_(rigWeights),
       rigBoneCount_(bones.boneCount()),
       options_(options),
-      fit_(problem, graph, rigWeights, rigBoneCount_, options.influences),
+      fit_(problem, graph, rigWeights, bones, options.influences),
       bones_(std::move(bones)),
       weights_(rigWeights.begin(), rigWeights.end()),
       size_m_(sizeOf(problem.rest_m)) {}

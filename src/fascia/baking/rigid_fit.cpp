@@ -12,7 +12,7 @@ namespace {
 constexpr double kLikeness = 1e-9;
 // A motion's next frame is near: three or four steps do. More tell of a start on the wrong side.
 constexpr int kMostSteps = 8;
-constexpr double kSmallestTurn_rad = 1e-9;  // the step after this one would be of its square
+constexpr double kSmallestTurn_rad = 1e-4;  // the step after this one would be of its square
 
 Mat3 rotationBySvd(const Mat3& correlation) {
   const Eigen::JacobiSVD<Mat3> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);

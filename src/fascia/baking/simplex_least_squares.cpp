@@ -20,10 +20,20 @@ constexpr int kTries = 3;
 // Weights and which of them may differ from 0, at the optimum among those.
 class Support {
  public:
-  Support(const CandidateMatrix& G, const CandidateVector& g) : G_(&G), g_(&g) {}
+  Support(const CandidateMatrix& G, const CandidateVector& g)
+      : G_(&G), g_(&g), scale_(G.diagonal().maxCoeff() + g.cwiseAbs().maxCoeff()) {}
 
   int size() const { return size_; }
-  double cost() const { return cost_; }
+  double scale() const { return scale_; }  // of the terms that cancel in gradients and costs
+  double cost() const {
+    double cost = 0;
+    for (int r = 0; r < size_; ++r) {
+      double row = -2 * (*g_)[member_[at(r)]];
+      for (int c = 0; c < size_; ++c) row += (*G_)(member_[at(r)], member_[at(c)]) * w_[c];
+      cost += 0.5 * w_[r] * row;
+    }
+    return cost;
+  }
   double multiplier() const { return multiplier_; }  // of Σ w = 1: gradient of every member
   bool has(int candidate) const {
     return std::find(member_.begin(), member_.begin() + size_, candidate) !=
@@ -66,12 +76,6 @@ class Support {
       w_.head(size_) += step * (best - w_.head(size_));
       if (blocking < 0) break;
       remove(blocking);
-    }
-    cost_ = 0;
-    for (int r = 0; r < size_; ++r) {
-      double row = -2 * (*g_)[member_[at(r)]];
-      for (int c = 0; c < size_; ++c) row += (*G_)(member_[at(r)], member_[at(c)]) * w_[c];
-      cost_ += 0.5 * w_[r] * row;
     }
   }
 
@@ -138,24 +142,24 @@ class Support {
 
   const CandidateMatrix* G_;
   const CandidateVector* g_;
+  double scale_;
   std::array<int, kMostMembers> member_{};
   int size_ = 0;
   Eigen::Matrix<double, kMostMembers, 1> w_ = Eigen::Matrix<double, kMostMembers, 1>::Zero();
   // Of G, restricted to the members: what is beyond them has no meaning.
   Eigen::Matrix<double, kMostMembers, kMostMembers> inverse_;
-  double multiplier_ = 0, cost_ = 0;
+  double multiplier_ = 0;
 };
 
 // The candidates outside of the support whose growth lowers the cost, the fastest first; -1: none.
-std::array<int, kTries> mostWanted(const CandidateMatrix& G, const CandidateVector& g,
-                                   const Support& support) {
+std::array<int, kTries> mostWanted(const Support& support) {
   const CandidateVector gradient = support.gradient();
   // Below this share of the terms that cancel in it, a gradient is rounding.
-  const double least = -1e-12 * (G.diagonal().maxCoeff() + g.cwiseAbs().maxCoeff());
+  const double least = -1e-12 * support.scale();
   std::array<int, kTries> wanted;
   wanted.fill(-1);
   std::array<double, kTries> slopes{};
-  for (int c = 0; c < static_cast<int>(g.size()); ++c) {
+  for (int c = 0; c < static_cast<int>(gradient.size()); ++c) {
     double slope = gradient[c] - support.multiplier();
     if (slope >= least || support.has(c)) continue;
     int candidate = c;
@@ -170,11 +174,10 @@ std::array<int, kTries> mostWanted(const CandidateMatrix& G, const CandidateVect
 }
 
 // Lets in whoever lowers the cost, then thins out again.
-Support widenAndThin(const CandidateMatrix& G, const CandidateVector& g, int mostNonZero,
-                     Support support) {
+Support widenAndThin(int mostNonZero, Support support) {
   // The limit only guards against rounding that cycles.
   for (int round = 0; round < 2 * kMostCandidates && support.size() < kMostMembers; ++round) {
-    const int candidate = mostWanted(G, g, support).front();
+    const int candidate = mostWanted(support).front();
     if (candidate < 0) break;
     support.add(candidate, 0);
     support.descend();
@@ -184,20 +187,22 @@ Support widenAndThin(const CandidateMatrix& G, const CandidateVector& g, int mos
 }
 
 // Changes one member at a time, as long as that pays.
-void exchange(const CandidateMatrix& G, const CandidateVector& g, int mostNonZero,
-              Support& support) {
-  const double least = 1e-13 * (G.diagonal().maxCoeff() + g.cwiseAbs().maxCoeff());
+void exchange(int mostNonZero, Support& support) {
+  const double least = 1e-13 * support.scale();
+  double cost = support.cost();
   for (int round = 0; round < 2 * kMostCandidates; ++round) {
     bool better = false;
-    for (const int candidate : mostWanted(G, g, support)) {
+    for (const int candidate : mostWanted(support)) {
       if (candidate < 0) break;
       Support trial = support;
       trial.add(candidate, 0);
       trial.descend();
       if (trial.size() > mostNonZero) trial.dropLeastMissed();
-      better = trial.cost() < support.cost() - least;
+      const double trialCost = trial.cost();
+      better = trialCost < cost - least;
       if (!better) continue;
       support = trial;
+      cost = trialCost;
       break;
     }
     if (!better) break;
@@ -212,10 +217,10 @@ CandidateVector solveOnSimplex(const CandidateMatrix& G, const CandidateVector& 
   Support now(G, g);
   now.start(start);
   now.descend();
-  const Support wide = widenAndThin(G, g, mostNonZero, now);
+  const Support wide = widenAndThin(mostNonZero, now);
   while (now.size() > mostNonZero) now.dropLeastMissed();
   if (wide.cost() < now.cost()) now = wide;
-  exchange(G, g, mostNonZero, now);
+  exchange(mostNonZero, now);
   return now.weights();
 }
 

@@ -1,6 +1,7 @@
 #include <fascia/baking/weight_fit.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -39,16 +40,18 @@ void sortUnique(std::vector<T>& values) {
 
 // Heaviest first; equal ones by bone, so that the order is always the same.
 PointWeights packed(std::span<const std::size_t> bones, const CandidateVector& w) {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t c = 0; c < bones.size(); ++c) {
-    const double weight = w[static_cast<Eigen::Index>(c)];
-    if (weight > 1e-7) order.emplace_back(-weight, bones[c]);
-  }
-  std::sort(order.begin(), order.end());
+  std::array<std::pair<double, std::size_t>, kMostNonZero> order;
+  std::size_t count = 0;
   double sum = 0;
-  for (const auto& [negative, bone] : order) sum -= negative;
+  for (std::size_t c = 0; c < bones.size() && count < order.size(); ++c) {
+    const double weight = w[static_cast<Eigen::Index>(c)];
+    if (weight <= 1e-7) continue;
+    order[count++] = {-weight, bones[c]};
+    sum += weight;
+  }
+  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
   PointWeights out;
-  for (std::size_t k = 0; k < order.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     out.joint[k] = static_cast<std::uint16_t>(order[k].second);
     out.weight[k] = static_cast<float>(-order[k].first / sum);
   }
@@ -58,16 +61,18 @@ PointWeights packed(std::span<const std::size_t> bones, const CandidateVector& w
 }  // namespace
 
 WeightFit::WeightFit(const SkinningProblem& problem, const PointGraph& graph,
-                     std::span<const PointWeights> rigWeights, std::size_t rigBoneCount,
+                     std::span<const PointWeights> rigWeights, const BoneTracks& rigBones,
                      int influences)
     : problem_(problem),
       graph_(graph),
       rig_(rigWeights),
-      rigBoneCount_(rigBoneCount),
+      rigBoneCount_(rigBones.boneCount()),
       influences_(influences),
-      stiffness_m2_(std::max(std::pow(kPullOverSize * sizeOf(problem.rest_m), 2), 1e-18)) {
+      stiffness_m2_(std::max(std::pow(kPullOverSize * sizeOf(problem.rest_m), 2), 1e-18)),
+      moments_(problem, rigBones) {
   findNearbyJoints();
   findAdjacentJoints();
+  findJointOffers();
 }
 
 void WeightFit::findNearbyJoints() {
@@ -105,7 +110,6 @@ bool WeightFit::mayFollow(std::size_t point, const HelperPlace& helper) const {
 
 // What all points of one fit share.
 struct WeightFit::Task {
-  const BoneMoments& moments;
   std::span<const HelperPlace> helpers;
   std::span<const PointWeights> before;
 
@@ -117,24 +121,49 @@ struct WeightFit::Task {
 
 // What one point needs, one after the other.
 struct WeightFit::Scratch {
-  struct Offer {
-    double error = 0;  // squared, if the bone carried the point alone
-    std::size_t bone = 0;
-    double withTarget = 0;  // Σ (T p)·x
-  };
-  Eigen::VectorXd target;
-  std::vector<Offer> offers;
-  std::vector<std::size_t> bones;  // of the offers that are taken
+  Quadratic square{};                      // of the point
+  std::vector<double> target;              // around its middle
+  double own = 0;                          // squared
+  std::vector<Offer> offers;               // those that are taken
+  std::vector<std::size_t> bones, joints;  // of these; joints: that helpers hang from
   CandidateMatrix G;
   CandidateVector g, start;
+
+  void goTo(const BoneMoments& moments, std::size_t point, const Eigen::Vector4d& p) {
+    square = BoneMoments::squareOf(p);
+    moments.target(point, target);
+    own = 0;
+    for (const double x : target) own += x * x;
+  }
 };
 
+WeightFit::Offer WeightFit::offerOf(std::size_t bone, const Eigen::Vector4d& p,
+                                    const Scratch& scratch) const {
+  const double cross = moments_.withTarget(bone, p, scratch.target);
+  return {moments_.between(bone, bone, scratch.square) - 2 * cross + scratch.own, cross, bone};
+}
+
+void WeightFit::findJointOffers() {
+  jointOffers_.resize(rig_.size());
+  const std::size_t tasks = (rig_.size() + kPointsPerTask - 1) / kPointsPerTask;
+  parallelFor(tasks, [&](std::size_t t) {
+    Scratch scratch;
+    const std::size_t end = std::min(rig_.size(), (t + 1) * kPointsPerTask);
+    for (std::size_t i = t * kPointsPerTask; i < end; ++i) {
+      const Eigen::Vector4d p = problem_.rest_m[i].homogeneous();
+      scratch.goTo(moments_, i, p);
+      for (const std::uint16_t joint : nearby_[i])
+        jointOffers_[i].push_back(offerOf(joint, p, scratch));
+    }
+  });
+}
+
 void WeightFit::fit(const BoneTracks& bones, std::span<const HelperPlace> helpers,
-                    std::vector<PointWeights>& weights) const {
-  const BoneMoments moments(problem_, bones);
+                    std::vector<PointWeights>& weights) {
+  moments_.update(bones);
   // All from the weights before, so that the order of points does not matter.
   const std::vector<PointWeights> before = weights;
-  const Task task{moments, helpers, before};
+  const Task task{helpers, before};
   const std::size_t tasks = (weights.size() + kPointsPerTask - 1) / kPointsPerTask;
   parallelFor(tasks, [&](std::size_t t) {
     Scratch scratch;
@@ -148,19 +177,15 @@ void WeightFit::fit(const BoneTracks& bones, std::span<const HelperPlace> helper
 // At most kMostCandidates bones: those that the point follows now, then those that carry it best by
 // themselves.
 void WeightFit::offerBones(const Task& task, std::size_t point, Scratch& scratch) const {
-  task.moments.target(point, scratch.target);
   const Eigen::Vector4d p = problem_.rest_m[point].homogeneous();
-  const double own = scratch.target.squaredNorm();
-  scratch.offers.clear();
-  const auto offer = [&](std::size_t bone) {
-    const double cross = task.moments.withTarget(bone, scratch.target).dot(p);
-    const double square = p.dot(task.moments.between(bone, bone) * p);
-    const bool used = weightOf(task.before[point], bone) > 0;
-    scratch.offers.push_back({used ? -1 : square - 2 * cross + own, bone, cross});
-  };
-  for (const std::uint16_t joint : nearby_[point]) offer(joint);
+  scratch.goTo(moments_, point, p);
+  scratch.offers = jointOffers_[point];
   for (std::size_t h = 0; h < task.helpers.size(); ++h) {
-    if (mayFollow(point, task.helpers[h])) offer(rigBoneCount_ + h);
+    if (mayFollow(point, task.helpers[h]))
+      scratch.offers.push_back(offerOf(rigBoneCount_ + h, p, scratch));
+  }
+  for (Offer& offer : scratch.offers) {
+    if (weightOf(task.before[point], offer.bone) > 0) offer.error = -1;
   }
   std::sort(scratch.offers.begin(), scratch.offers.end(), [](const auto& a, const auto& b) {
     return std::pair(a.error, a.bone) < std::pair(b.error, b.bone);
@@ -173,23 +198,28 @@ void WeightFit::offerBones(const Task& task, std::size_t point, Scratch& scratch
 PointWeights WeightFit::fitPoint(const Task& task, std::size_t point, Scratch& scratch) const {
   offerBones(task, point, scratch);
   const auto count = static_cast<Eigen::Index>(scratch.offers.size());
-  const Eigen::Vector4d p = problem_.rest_m[point].homogeneous();
-  const double own = scratch.target.squaredNorm();
+  const double stiffness = static_cast<double>(problem_.frameCount) * stiffness_m2_;
   scratch.G.resize(count, count);
   scratch.g = scratch.start = CandidateVector::Zero(count);
   scratch.bones.clear();
+  scratch.joints.clear();
   for (Eigen::Index a = 0; a < count; ++a) {
-    const Scratch::Offer& left = scratch.offers[static_cast<std::size_t>(a)];
+    const Offer& left = scratch.offers[static_cast<std::size_t>(a)];
     scratch.bones.push_back(left.bone);
+    scratch.joints.push_back(task.jointOf(left.bone, rigBoneCount_));
     scratch.start[a] = weightOf(task.before[point], left.bone);
     for (Eigen::Index b = 0; b <= a; ++b) {
-      const Scratch::Offer& right = scratch.offers[static_cast<std::size_t>(b)];
-      const double square = p.dot(task.moments.between(left.bone, right.bone) * p);
-      scratch.G(a, b) = scratch.G(b, a) = square - left.withTarget - right.withTarget + own;
+      const auto other = static_cast<std::size_t>(b);
+      const Offer& right = scratch.offers[other];
+      const double product = moments_.between(left.bone, right.bone, scratch.square);
+      const double shared = scratch.joints[other] == scratch.joints.back() ? stiffness : 0;
+      scratch.G(a, b) = scratch.G(b, a) =
+          product - left.withTarget - right.withTarget + scratch.own + shared;
     }
+    // ½ λ Σ_j (Σ w of joint j and its helpers - rig's weight of j)².
+    scratch.g[a] = stiffness * weightOf(rig_[point], scratch.joints.back());
   }
   addNeighborTerm(task, point, scratch);
-  addRigTerm(task, point, scratch);
   return packed(scratch.bones, solveOnSimplex(scratch.G, scratch.g, influences_, scratch.start));
 }
 
@@ -206,21 +236,6 @@ void WeightFit::addNeighborTerm(const Task& task, std::size_t point, Scratch& sc
     const auto k = static_cast<Eigen::Index>(c);
     scratch.G(k, k) += lambda;
     scratch.g[k] += lambda * mean;
-  }
-}
-
-// ½ λ Σ_j (Σ w of joint j and its helpers - rig's weight of j)².
-void WeightFit::addRigTerm(const Task& task, std::size_t point, Scratch& scratch) const {
-  const double lambda = static_cast<double>(problem_.frameCount) * stiffness_m2_;
-  for (std::size_t a = 0; a < scratch.bones.size(); ++a) {
-    const std::size_t joint = task.jointOf(scratch.bones[a], rigBoneCount_);
-    const auto r = static_cast<Eigen::Index>(a);
-    scratch.g[r] += lambda * weightOf(rig_[point], joint);
-    for (std::size_t b = 0; b < scratch.bones.size(); ++b) {
-      if (task.jointOf(scratch.bones[b], rigBoneCount_) == joint) {
-        scratch.G(r, static_cast<Eigen::Index>(b)) += lambda;
-      }
-    }
   }
 }
 

@@ -29,21 +29,29 @@ struct HelperPlace {
 class WeightFit {
  public:
   WeightFit(const SkinningProblem& problem, const PointGraph& graph,
-            std::span<const PointWeights> rigWeights, std::size_t rigBoneCount, int influences);
+            std::span<const PointWeights> rigWeights, const BoneTracks& rigBones, int influences);
 
-  // Of all points. `weights` is start and result; neighbours count as they were before.
+  // Of all points. `bones`: the rig's as they were given, then helpers. `weights` is start and
+  // result; neighbours count as they were before.
   void fit(const BoneTracks& bones, std::span<const HelperPlace> helpers,
-           std::vector<PointWeights>& weights) const;
+           std::vector<PointWeights>& weights);
 
  private:
+  // A bone that a point may follow.
+  struct Offer {
+    double error = 0;       // squared, if the bone carried the point alone
+    double withTarget = 0;  // Σ (T p̃)·x
+    std::size_t bone = 0;
+  };
   struct Scratch;
   struct Task;
   PointWeights fitPoint(const Task& task, std::size_t point, Scratch& scratch) const;
   bool mayFollow(std::size_t point, const HelperPlace& helper) const;
   void offerBones(const Task& task, std::size_t point, Scratch& scratch) const;
   void addNeighborTerm(const Task& task, std::size_t point, Scratch& scratch) const;
-  void addRigTerm(const Task& task, std::size_t point, Scratch& scratch) const;
+  Offer offerOf(std::size_t bone, const Eigen::Vector4d& p, const Scratch& scratch) const;
   void findNearbyJoints();
+  void findJointOffers();
   void findAdjacentJoints();
 
   const SkinningProblem& problem_;
@@ -54,6 +62,8 @@ class WeightFit {
   double stiffness_m2_;                             // of both weak terms, per frame
   std::vector<std::vector<std::uint16_t>> nearby_;  // per point: joints around it, increasing
   std::vector<bool> adjacent_;                      // joint * rigBoneCount + joint
+  BoneMoments moments_;
+  std::vector<std::vector<Offer>> jointOffers_;  // per point: of its nearby joints, the same always
 };
 
 }  // namespace fascia

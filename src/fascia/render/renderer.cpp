@@ -39,6 +39,7 @@ void requireDrawable(const Scene& scene, int width, int height) {
 }  // namespace
 
 struct Renderer::Impl {
+  Look look;
   GlContext context;  // first: everything below needs it until it is gone
   gl::ShadowPass shadow;
   std::optional<gl::OcclusionPass> occlusion;  // none in the fast look
@@ -46,8 +47,8 @@ struct Renderer::Impl {
   gl::TextureCache textures;
   std::vector<std::unique_ptr<gl::GpuMesh>> meshes;  // by place in the scene
 
-  explicit Impl(Look look)
-      : shadow(look == Look::fast ? kFastShadowSide : kShadowSide), beauty(look) {
+  explicit Impl(Look wanted)
+      : look(wanted), shadow(look == Look::fast ? kFastShadowSide : kShadowSide), beauty(look) {
     if (look == Look::full) occlusion.emplace();
   }
   ~Impl() { context.makeCurrent(); }
@@ -74,7 +75,7 @@ struct Renderer::Impl {
   PassTimes render(const Scene& scene, int width, int height, Pixels& pixels, const Run& run) {
     requireDrawable(scene, width, height);
     context.makeCurrent();
-    gl::Frame frame = gl::prepareFrame(scene, width, height);
+    gl::Frame frame = gl::prepareFrame(scene, width, height, look);
     PassTimes times;
     run(times.upload_s, [&] { uploadItems(scene, frame); });
     run(times.shadow_s, [&] { shadow.draw(frame); });

@@ -100,8 +100,10 @@ void BackdropPass::draw(const Frame& frame, const LightPasses& light, LitProgram
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture_.id());
   glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, picture_.id());
-  const ScissorTo shadows(frame.shadowedFloor, width_, height_);
-  drawGround(frame, light, lit, LitPrograms::Part::seen);
+  for (const ScreenBox& part : frame.shadowedFloor) {
+    const ScissorTo shadows(part, width_, height_, 0);
+    drawGround(frame, light, lit, LitPrograms::Part::seen);
+  }
 }
 
 }  // namespace fascia::gl

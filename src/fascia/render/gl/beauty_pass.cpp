@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fascia/render/edge_filter.h>
 #include <fascia/render/shaders/sources.h>
 
 namespace fascia::gl {
@@ -9,28 +10,42 @@ namespace {
 
 constexpr int kSamples = 4;  // per pixel; 8 costs a software rasteriser half as much again
 
+// Rows from the top.
+PixelBox pixelsOf(const ScreenBox& box, int width, int height) {
+  const Eigen::Vector2f size(static_cast<float>(width), static_cast<float>(height));
+  const Eigen::Vector2f low = box.min().cwiseProduct(size), high = box.max().cwiseProduct(size);
+  constexpr float kMargin = 2;  // pixels: an outline's other side
+  return {static_cast<int>(low.x() - kMargin), static_cast<int>(size.y() - high.y() - kMargin),
+          static_cast<int>(high.x() + kMargin), static_cast<int>(size.y() - low.y() + kMargin)};
+}
+
 }  // namespace
 
 BeautyPass::BeautyPass(Look look)
-    : lit_(look),
+    : samples_(look == Look::fast ? 0 : kSamples),
+      lit_(look),
       depthProgram_(shaders::kMeshVertex, shaders::kDepthFragment),
       layerProgram_(shaders::kFullScreenVertex, shaders::kLayerFragment) {}
 
 void BeautyPass::resize(int width, int height) {
   if (width == width_ && height == height_) return;
   width_ = width, height_ = height;
-  glBindRenderbuffer(GL_RENDERBUFFER, color_.id());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, kSamples, GL_RGBA8, width, height);
+  allocateTexture(layer_, width, height, {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE}, GL_NEAREST);
+  attachTexture(resolved_, GL_COLOR_ATTACHMENT0, layer_);
+  requireComplete("a layer of a picture");
   glBindRenderbuffer(GL_RENDERBUFFER, depth_.id());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, kSamples, GL_DEPTH24_STENCIL8, width, height);
-  allocateTexture(resolvedColor_, width, height, {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE}, GL_NEAREST);
-  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.id());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, GL_DEPTH24_STENCIL8, width, height);
+  if (samples_ == 0) {
+    attachTexture(target_, GL_COLOR_ATTACHMENT0, layer_);
+  } else {
+    glBindRenderbuffer(GL_RENDERBUFFER, color_.id());
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, GL_RGBA8, width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.id());
+  }
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
                             depth_.id());
   requireComplete("an anti-aliased picture");
-  attachTexture(resolved_, GL_COLOR_ATTACHMENT0, resolvedColor_);
-  requireComplete("a layer of a picture");
 }
 
 void BeautyPass::drawOpaque(const Frame& frame, const LightPasses& light,
@@ -105,6 +120,7 @@ void BeautyPass::drawSeeThrough(const Frame& frame, const LightPasses& light, Ma
 
 // Where the floor is nearer, the backdrop shows.
 void BeautyPass::cutGround(const Frame& frame) {
+  if (!frame.dipsBelowFloor) return;
   depthProgram_.use();
   depthProgram_.set("clipFromWorld", frame.clipFromWorld);
   for (const DrawItem& item : frame.items)
@@ -126,6 +142,10 @@ void BeautyPass::drawSubject(const Frame& frame, const LightPasses& light) {
   cutGround(frame);
   for (const auto kind : {Kind::bone, Kind::muscle, Kind::plain, Kind::skin})
     drawSeeThrough(frame, light, kind);
+}
+
+void BeautyPass::resolve() {
+  if (samples_ == 0) return;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.id());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.id());
   glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
@@ -137,7 +157,7 @@ void BeautyPass::layOverBackdrop() {
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // the layer's colours are multiplied by its alpha
   layerProgram_.use();
-  bindTexture(0, resolvedColor_.id());
+  bindTexture(0, layer_.id());
   layerProgram_.set("layer", 0);
   glBindVertexArray(noArrays_.id());
   glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -148,7 +168,9 @@ void BeautyPass::draw(const Frame& frame, const LightPasses& light) {
   resize(frame.width, frame.height);
   backdrop_.draw(frame, light, lit_);
   const ScissorTo subject(frame.subjectOnScreen, width_, height_);
+  subject_ = frame.subjectOnScreen;
   drawSubject(frame, light);
+  resolve();
   layOverBackdrop();
 }
 
@@ -165,6 +187,7 @@ void BeautyPass::read(Pixels& pixels) const {
     std::swap_ranges(pixels.rgba.begin() + static_cast<std::ptrdiff_t>(top * row),
                      pixels.rgba.begin() + static_cast<std::ptrdiff_t>((top + 1) * row),
                      pixels.rgba.begin() + static_cast<std::ptrdiff_t>(bottom * row));
+  if (samples_ == 0) smoothEdges(pixels, pixelsOf(subject_, width_, height_));
 }
 
 }  // namespace fascia::gl

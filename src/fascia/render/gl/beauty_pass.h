@@ -6,8 +6,9 @@
 
 namespace fascia::gl {
 
-// The lit, anti-aliased picture: what stands in the studio is drawn on its own, with several
-// samples per pixel, in the part of the picture that it covers, and laid over the backdrop.
+// The lit, anti-aliased picture: what stands in the studio is drawn on its own, in the part of the
+// picture that it covers, and laid over the backdrop. The full look takes several samples per
+// pixel, the fast one smooths the edges afterwards.
 class BeautyPass {
  public:
   explicit BeautyPass(Look look);
@@ -23,15 +24,18 @@ class BeautyPass {
   void drawHidden(const Frame& frame, const LightPasses& light);
   void drawDepth(const Frame& frame, Material::Kind kind);
   void cutGround(const Frame& frame);
+  void resolve();
   void layOverBackdrop();
 
+  int samples_;  // per pixel; 0: one, without what it takes to have more
   LitPrograms lit_;
   BackdropPass backdrop_;
   Program depthProgram_, layerProgram_;
   VertexArray noArrays_;
-  Texture resolvedColor_;
-  Renderbuffer color_, depth_;
+  Texture layer_;               // what stands in the studio, its colours multiplied by alpha
+  Renderbuffer color_, depth_;  // color_: of all samples
   Framebuffer target_, resolved_;
+  ScreenBox subject_;  // of what was drawn last
   int width_ = 0, height_ = 0;
 };
 

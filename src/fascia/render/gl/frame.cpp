@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include <fascia/render/gl/floor_tiles.h>
+
 namespace fascia::gl {
 namespace {
 
@@ -22,42 +24,56 @@ float largestScatter(const Scene& scene) {
   return scatter_m;
 }
 
-// Around all places of the ground at height_m that the subject darkens, by being near or by its
-// shadow.
-std::vector<Vec3> darkenedBy(const Frame& frame, double height_m) {
-  const double radius_m = static_cast<double>(frame.subjectRadius_m);
-  const double near_m = kOcclusionRadius * radius_m;
-  const double spread = std::tan(frame.scene->studio.key_radius_rad);
-  const Vec3 light = frame.keyDirection.cast<double>();
-  std::vector<Vec3> points;
-  for (const Vec3& corner : cornersOf(frame.subject)) {
-    const double along_m = std::max(corner.y() - height_m, 0.0) / light.y();
-    const Vec3 foot = corner - along_m * light;
-    // The penumbra widens with the way, and is stretched where the light is low. The rest is how
-    // far blockers are searched for.
-    const double soft_m = (spread * along_m + 0.08 * radius_m) / light.y();
-    for (const auto& [center, reach_m] : {std::pair(corner, near_m), std::pair(foot, soft_m)})
-      for (const double x : {-reach_m, reach_m})
-        for (const double z : {-reach_m, reach_m})
-          points.emplace_back(center.x() + x, height_m, center.z() + z);
-  }
-  return points;
+Eigen::Matrix4f worldFromObject(const Drawable& drawable) {
+  Eigen::Matrix4f world = Eigen::Matrix4f::Identity();
+  world.block<3, 3>(0, 0) = drawable.world.rotation.cast<float>();
+  world.block<3, 1>(0, 3) = drawable.world.translation_m.cast<float>();
+  return world;
 }
 
-ScreenBox shadowedFloor(const Frame& frame) {
-  const ScreenBox whole(Eigen::Vector2f::Zero(), Eigen::Vector2f::Ones());
+bool isGround(const Drawable& drawable) {
+  return drawable.material.kind == Material::Kind::ground;
+}
+
+bool isFlat(const Box& ground) {
+  return ground.empty() || ground.size().y() < 1e-6 * ground.size().norm();
+}
+
+DarkeningReach reachOf(const Frame& frame, Look look) {
+  const float radius_m = frame.subjectRadius_m;
+  // A few texels of the shadow map, as shaders look it up.
+  if (look == Look::fast) return {frame.keyDirection, 0, 0.02f * radius_m, 0};
+  // As far as blockers are searched for.
+  return {frame.keyDirection,
+          static_cast<float>(std::tan(static_cast<double>(frame.scene->studio.key_radius_rad))),
+          0.08f * radius_m, kOcclusionRadius * radius_m};
+}
+
+std::vector<ScreenBox> shadowedFloor(const Frame& frame, Look look) {
+  const std::vector<ScreenBox> whole{{Eigen::Vector2f::Zero(), Eigen::Vector2f::Ones()}};
   constexpr float kLow = 0.2f;  // of the light above the horizon: shadows as long as the floor
   if (frame.keyDirection.y() < kLow) return whole;
-  ScreenBox box;
-  for (const Drawable& drawable : frame.scene->drawables) {
-    if (drawable.material.kind != Material::Kind::ground) continue;
-    const Box ground = worldBounds(drawable);
-    const bool flat = ground.empty() || ground.size().y() < 1e-6 * ground.size().norm();
-    if (!flat) return whole;
-    if (!ground.empty())
-      box.extend(onScreen(darkenedBy(frame, ground.low.y()), frame.clipFromWorld));
+  FloorTiles tiles(frame.clipFromWorld, frame.width, frame.height, reachOf(frame, look));
+  for (const Drawable& floor : frame.scene->drawables) {
+    if (!isGround(floor)) continue;
+    const Box ground = worldBounds(floor);
+    if (!isFlat(ground)) return whole;
+    if (ground.empty()) continue;
+    for (const Drawable& drawable : frame.scene->drawables)
+      if (!isGround(drawable))
+        tiles.add(drawable.mesh, worldFromObject(drawable), static_cast<float>(ground.low.y()));
   }
-  return box;
+  return tiles.boxes();
+}
+
+// Floor may be nearer to the camera than what stands on it.
+bool dipsBelowFloor(const Frame& frame) {
+  const double slack_m = 1e-5 * static_cast<double>(frame.subjectRadius_m);
+  return std::ranges::any_of(frame.scene->drawables, [&](const Drawable& drawable) {
+    if (!isGround(drawable)) return false;
+    const Box ground = worldBounds(drawable);
+    return !isFlat(ground) || (!ground.empty() && frame.subject.low.y() < ground.low.y() - slack_m);
+  });
 }
 
 }  // namespace
@@ -68,7 +84,7 @@ void DrawItem::drawSeenSides() const {
   glDisable(GL_CULL_FACE);
 }
 
-Frame prepareFrame(const Scene& scene, int width, int height) {
+Frame prepareFrame(const Scene& scene, int width, int height, Look look) {
   Frame frame;
   frame.scene = &scene;
   frame.width = width, frame.height = height;
@@ -100,7 +116,8 @@ Frame prepareFrame(const Scene& scene, int width, int height) {
   frame.rimDirection = turned(studio.rim.direction, studio.azimuth_rad);
   frame.thicknessScale_m = std::max(2 * largestScatter(scene), 0.01f * frame.subjectRadius_m);
   frame.subjectOnScreen = onScreen(cornersOf(frame.subject), frame.clipFromWorld);
-  frame.shadowedFloor = shadowedFloor(frame);
+  frame.shadowedFloor = shadowedFloor(frame, look);
+  frame.dipsBelowFloor = dipsBelowFloor(frame);
   return frame;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fascia/render/gl/gpu_mesh.h>
 #include <fascia/render/gl/screen_area.h>
+#include <fascia/render/look.h>
 #include <fascia/render/scene.h>
 
 namespace fascia::gl {
@@ -40,10 +41,13 @@ struct Frame {
   Eigen::Vector3f keyDirection, fillDirection, rimDirection;  // world, unit, towards the light
   float thicknessScale_m = 0.1f;  // thickness that the occlusion pass resolves
   ScreenBox subjectOnScreen;      // holds all but the ground
-  ScreenBox shadowedFloor;        // holds the ground that the subject darkens
+  // Parts that hold all the ground that the subject darkens.
+  std::vector<ScreenBox> shadowedFloor;
+  bool dipsBelowFloor = true;  // the ground may hide a part of the subject
   std::vector<DrawItem> items;
 };
 
-Frame prepareFrame(const Scene& scene, int width, int height);  // items are left empty
+// Items are left empty.
+Frame prepareFrame(const Scene& scene, int width, int height, Look look);
 
 }  // namespace fascia::gl

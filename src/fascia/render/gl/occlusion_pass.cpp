@@ -1,7 +1,6 @@
 #include <fascia/render/gl/occlusion_pass.h>
 
 #include <cmath>
-#include <optional>
 
 #include <fascia/render/shaders/sources.h>
 
@@ -51,10 +50,13 @@ void OcclusionPass::drawGeometry(const Frame& frame) {
     const bool ground = item.material().kind == Material::Kind::ground;
     if (!ground && !item.casts()) continue;
     geometryProgram_.set("worldFromObject", item.worldFromObject);
+    if (!ground) item.drawSeenSides();
     // Floor that nothing darkens is left out: it would be worked on for nothing.
-    std::optional<ScissorTo> darkened;
-    if (ground) darkened.emplace(frame.shadowedFloor, width_, height_);
-    item.drawSeenSides();
+    for (const ScreenBox& part : frame.shadowedFloor) {
+      if (!ground) break;
+      const ScissorTo darkened(part, width_, height_);
+      item.drawSeenSides();
+    }
   }
 }
 
@@ -82,7 +84,9 @@ void OcclusionPass::draw(const Frame& frame, const ShadowPass& shadow) {
     glBindFramebuffer(GL_FRAMEBUFFER, target->id());
     glClear(GL_COLOR_BUFFER_BIT);
   }
-  const ScissorTo darkened(frame.subjectOnScreen.merged(frame.shadowedFloor), width_, height_);
+  ScreenBox darkenedPart = frame.subjectOnScreen;
+  for (const ScreenBox& part : frame.shadowedFloor) darkenedPart.extend(part);
+  const ScissorTo darkened(darkenedPart, width_, height_);
   occlusionProgram_.use();
   bindTexture(0, geometry_.id());
   occlusionProgram_.set("geometry", 0);

@@ -28,12 +28,12 @@ ScreenBox onScreen(std::span<const Vec3> points, const Eigen::Matrix4f& clipFrom
   return whole.intersection(box);
 }
 
-ScissorTo::ScissorTo(const ScreenBox& box, int width, int height) {
-  constexpr float kMargin = 3;  // pixels: blurs and edges reach a little farther
+ScissorTo::ScissorTo(const ScreenBox& box, int width, int height, int margin) {
+  const auto around = static_cast<float>(margin);
   const auto span = [&](int axis, int size) {
     const auto n = static_cast<float>(size);
-    const float low = std::floor(box.min()[axis] * n - kMargin);
-    const float high = std::ceil(box.max()[axis] * n + kMargin);
+    const float low = std::floor(box.min()[axis] * n - around);
+    const float high = std::ceil(box.max()[axis] * n + around);
     const int first = static_cast<int>(std::clamp(low, 0.f, n));
     return std::array{first, static_cast<int>(std::clamp(high, 0.f, n)) - first};
   };

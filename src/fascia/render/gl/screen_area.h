@@ -17,11 +17,12 @@ std::array<Vec3, 8> cornersOf(const Box& box);
 // What points cover, seen through a camera; all of the picture if one is behind it.
 ScreenBox onScreen(std::span<const Vec3> points, const Eigen::Matrix4f& clipFromWorld);
 
-// Restricts drawing, clearing and copying to a part of a target of this size, a few pixels more on
-// every side, while it lives.
+// Restricts drawing, clearing and copying to a part of a target of this size, and to a margin
+// around it, while it lives.
 class ScissorTo {
  public:
-  ScissorTo(const ScreenBox& box, int width, int height);
+  static constexpr int kMargin = 3;  // pixels: blurs and edges reach a little farther
+  ScissorTo(const ScreenBox& box, int width, int height, int margin = kMargin);
   ~ScissorTo();
   ScissorTo(const ScissorTo&) = delete;
   ScissorTo& operator=(const ScissorTo&) = delete;
