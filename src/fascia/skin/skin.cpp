@@ -24,7 +24,7 @@ const VectorArray& shown(const Skin& skin, const DistanceField& flesh, const Ski
   if (!faces) return state.position;
   lifted = state.position;
   liftFaces(*faces, flesh, skin.points(), static_cast<float>(kFaceClearance * skin.size_m()),
-            kShownLift, lifted);
+            kShownLift * skin.topology().allowedStretch(), lifted);
   skin.topology().complete(lifted);
   return lifted;
 }

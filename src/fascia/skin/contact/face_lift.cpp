@@ -228,7 +228,8 @@ void liftFaces(const FaceSamples& faces, const DistanceField& flesh, const Point
                 "a number for each point");
   const VectorArray before = position;
   FaceLift lift(faces, flesh, points, clearance_m, position);
-  for (const float way : kShares)
+  if (!lift.pass(kShares[0])) return;
+  for (const float way : std::span(kShares).subspan(1))
     if (!lift.pass(way)) break;
   LiftLimit(faces, static_cast<float>(most_stretch), before, position).apply();
 }

@@ -9,9 +9,10 @@ namespace fascia {
 // The usual clearance, as a share of the skin's size: what lies between samples comes nearer by
 // less.
 constexpr double kFaceClearance = 1e-3;
-// And how far edges may be stretched for it: those of a rest shape, which are at rest then as they
-// are, and of a shape that is shown.
-constexpr double kRestLift = 2, kShownLift = 1.68;
+// How far edges of a rest shape, which are at rest then as they are, may be stretched for it.
+constexpr double kRestLift = 2;
+// And those of a shape that is shown, beyond what its material allows.
+constexpr double kShownLift = 1.2;
 
 // Lifts faces off the flesh that comes through them between their points: moves free points out
 // until hardly a sample is nearer to a solid than `clearance_m`, or than its fat where that is

@@ -69,7 +69,7 @@ void GridTopology::addForceJacobian(const VectorArray& position,
 }
 
 StretchLimit GridTopology::makeStretchLimit() const {
-  return StretchLimit(gridStretchLimits(elastic_, std::sqrt(1 + elastic_.coefficients().cap)));
+  return StretchLimit(gridStretchLimits(elastic_, static_cast<float>(allowedStretch())));
 }
 
 void GridTopology::surface(const VectorArray& position, TriangleMesh& mesh) const {

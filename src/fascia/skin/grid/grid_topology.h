@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <fascia/skin/grid/bending.h>
 #include <fascia/skin/grid/elastic_grid.h>
 #include <fascia/skin/grid/grid_layout.h>
@@ -27,6 +29,7 @@ class GridTopology final : public SkinTopology {
   double maxStretch(const VectorArray& position) const override {
     return elastic_.maxStretch(position);
   }
+  double allowedStretch() const override { return std::sqrt(1 + elastic_.coefficients().cap); }
   StretchLimit makeStretchLimit() const override;
   void surface(const VectorArray& position, TriangleMesh& mesh) const override;
 

@@ -40,7 +40,7 @@ void MeshTopology::addForceJacobian(const VectorArray& position,
 
 // One level: meshes have no rows to take every second of.
 StretchLimit MeshTopology::makeStretchLimit() const {
-  return StretchLimit({{membrane_.edges(std::sqrt(1 + membrane_.cap())), {}}});
+  return StretchLimit({{membrane_.edges(static_cast<float>(allowedStretch())), {}}});
 }
 
 void MeshTopology::surface(const VectorArray& position, TriangleMesh& mesh) const {

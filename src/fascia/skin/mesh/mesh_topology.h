@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -36,6 +37,7 @@ class MeshTopology final : public SkinTopology {
   double maxStretch(const VectorArray& position) const override {
     return membrane_.maxStretch(position);
   }
+  double allowedStretch() const override { return std::sqrt(1 + membrane_.cap()); }
   StretchLimit makeStretchLimit() const override;
   void surface(const VectorArray& position, TriangleMesh& mesh) const override;
 
