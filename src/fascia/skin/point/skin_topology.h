@@ -45,7 +45,8 @@ class SkinTopology {
   virtual void addForceJacobian(const VectorArray& position,
                                 std::vector<Eigen::Triplet<double>>& entries) const = 0;
   virtual double maxStretch(const VectorArray& position) const = 0;  // edge over rest length
-  virtual double allowedStretch() const = 0;  // max_stretch of the material
+  // max_stretch of the material.
+  virtual double allowedStretch() const = 0;
   // What keeps edges within it.
   virtual StretchLimit makeStretchLimit() const = 0;
   // The surface for display and export; see skinSurface().
