@@ -46,6 +46,20 @@ std::string motionText(const std::string& name, double duration_s, bool loop) {
   return fmt::format("{}, {:.4g} s{}", name, duration_s, loop ? ", loops" : "");
 }
 
+// Left out where there are none, as in most files.
+void addMorphs(const RiggedModel& rig, Facts& facts) {
+  if (rig.morphs.empty()) return;
+  Json::List morphs;
+  std::vector<std::string> texts;
+  for (const RigMorph& morph : rig.morphs) {
+    morphs.push_back(Json::Object{{"name", morph.name},
+                                  {"points", static_cast<int>(morph.points.size())},
+                                  {"rest", double{morph.rest}}});
+    texts.push_back(fmt::format("{}, {} points", morph.name, morph.points.size()));
+  }
+  facts.add("rig_morphs", std::move(morphs), texts);
+}
+
 // What an imported file holds. Its motions are told with the character's, or by addRigMotions.
 void addRig(const RiggedModel& rig, Facts& facts) {
   facts.add("rig", rig.sourceFile);
@@ -72,6 +86,7 @@ void addRig(const RiggedModel& rig, Facts& facts) {
   }
   for (const std::string& note : rig.notes) notes.push_back(note);
   facts.add("rig_parts", std::move(parts), partTexts);
+  addMorphs(rig, facts);
   facts.add("rig_materials", std::move(materials), materialTexts);
   facts.add("rig_notes", std::move(notes), rig.notes);
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <fascia/character/editing.h>
 #include <fascia/character/recording.h>
 #include <fascia/io/state/state_file.h>
 #include <fascia/render/pixels.h>

@@ -177,6 +177,82 @@ void fuzzRig(const CharacterDef& first, int count, int compareEvery) {
   EXPECT_LE(stats.repaired_points, static_cast<std::uint64_t>(count / 50));
 }
 
+// A character whose rig brings a motion and whose flesh, skin and motions refer to a joint.
+CharacterDef nodding() {
+  CharacterDef def = wavingArm();
+  SkinRegionDef& region = def.skin->regions.emplace_back();
+  region.joint = "fore";
+  region.edits = {{SkinQuantity::jiggle}};
+  def.skin->brushes = {{SkinQuantity::muscle, Vec3::Zero(), "fore", 0.1, 0.3}};
+  return def;
+}
+
+TEST(RigRenaming, KeepsReferencesAndEveryBit) {
+  const Character start(nodding());
+  CharacterDef def = start.def();
+  renameJoint(def, "fore", "forearm");
+  ASSERT_EQ(def.rig->joint_names.size(), 1u);
+  EXPECT_EQ(def.rig->joint_names[0].joint, "fore");
+  const Character renamed = start.edited(def);
+  EXPECT_TRUE(renamed.skeleton().find("forearm").valid());
+  EXPECT_FALSE(renamed.skeleton().find("fore").valid());
+  EXPECT_EQ(poseSkinOf(renamed), poseSkinOf(start));
+  EXPECT_EQ(test::hashAfter(renamed, 8), test::hashAfter(start, 8));
+  EXPECT_EQ(test::hashAfter(Character(def), 8), test::hashAfter(start, 8));
+}
+
+TEST(RigRenaming, GoesOnWhileItMoves) {
+  const Character start(nodding());
+  CharacterState a = initialState(start, start.source(0));
+  SkinStats stats;
+  for (int f = 0; f < 8; ++f) advance(start, start.source(0), kRigFrame_s, a, stats);
+  CharacterDef def = start.def();
+  renameJoint(def, "upper", "fore_");
+  renameJoint(def, "fore", "upper");  // a name that is free again, and another joint's in the file
+  const Character renamed = start.edited(def);
+  CharacterState b = carryOver(start, a, renamed);
+  for (int f = 0; f < 8; ++f) {
+    advance(start, start.source(0), kRigFrame_s, a, stats);
+    advance(renamed, renamed.source(0), kRigFrame_s, b, stats);
+  }
+  EXPECT_EQ(hashOf(renamed, b), hashOf(start, a));
+}
+
+TEST(RigRenaming, BackIsAsIfNothingHadBeen) {
+  const CharacterDef before = nodding();
+  CharacterDef def = before;
+  renameJoint(def, "fore", "forearm");
+  renameJoint(def, "forearm", "arm");
+  ASSERT_EQ(def.rig->joint_names.size(), 1u);
+  renameJoint(def, "arm", "fore");
+  EXPECT_EQ(def, before);
+}
+
+TEST(RigRenaming, OfAFoxPlaysTheMotionsOfItsFile) {
+  const auto file = assetFile("mesh2motion-cc0/fox-animations.glb");
+  if (!file) GTEST_SKIP() << "the shared assets are not here";
+  const Character start(test::fleshOut(file->string()));
+  CharacterDef def = start.def();
+  const std::string old = def.rig->model->joints.back().name;
+  renameJoint(def, old, "the last one");
+  const Character renamed = start.edited(def);
+  ASSERT_EQ(renamed.motionCount(), start.motionCount());
+  EXPECT_EQ(poseSkinOf(renamed), poseSkinOf(start));
+  EXPECT_EQ(test::hashAfter(renamed, 4), test::hashAfter(start, 4));
+}
+
+TEST(RigRenaming, OfJointsThatTheFileLacksIsOneFault) {
+  CharacterDef def = nodding();
+  def.rig->joint_names = {{"elbow", "fore"}};
+  try {
+    const Character character(def);
+    FAIL();
+  } catch (const Error& error) {
+    ASSERT_EQ(error.issues().size(), 1u);
+    EXPECT_EQ(error.issues()[0].where.pointer, "/rig/joint_names/0/joint");
+  }
+}
+
 TEST(RigEditing, OfAnArmStaysWholeAndGivesTheBitsOfAFreshBuild) {
   fuzzRig(wavingArm(), rigEditCount(90), 4);
 }

@@ -153,7 +153,7 @@ TEST(StateFile, IsRefusedByAnotherCharacter) {
   expectRefused(Character(def), bytes, "its skin is a grid, this one's none");
   def = richCharacter();
   def.flesh.solids[1].name = "ribs";
-  expectRefused(Character(def), bytes, "its joints or solids have other names");
+  expectRefused(Character(def), bytes, "its joints, solids or morphs have other names");
 }
 
 TEST(StateFile, GoesOnInACharacterOfAnotherMaterial) {

@@ -74,6 +74,9 @@ inline FleshDef armFlesh() {
 struct Arm {
   Skeleton skeleton;
   Flesh flesh;
+  Morphs morphs;  // none
+
+  Figure figure() const { return {skeleton, flesh, morphs}; }
 
   Arm() : Arm(armSkeleton(), armFlesh()) {}
   Arm(const SkeletonDef& skeletonDef, const FleshDef& fleshDef) {
@@ -140,7 +143,7 @@ inline BoundClip flexClip(const Arm& arm) {
   motion.tracks = {{TrackDef::Target::joint, "elbow", "rz", {{0, 0}, {1, 2}}},
                    {TrackDef::Target::solid, "thumb", "bend.angle_rad", {{0, 0.2}, {1, 0.9}}}};
   Diagnostics diagnostics;
-  BoundClip clip = bindMotion(motion, arm.skeleton, arm.flesh, {}, "/m", diagnostics);
+  BoundClip clip = bindMotion(motion, arm.figure(), {}, "/m", diagnostics);
   diagnostics.throwIfErrors();
   return clip;
 }

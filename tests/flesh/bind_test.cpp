@@ -34,7 +34,7 @@ struct Binding {
     ornamentDef.solids = {test::solid("ring", "hand", test::shape("sphere", {}))};
     const Flesh ornaments(ornamentDef, arm.skeleton, "/ornaments", diagnostics,
                           Flesh::Role::ornament);
-    clip = bindMotion(motion, arm.skeleton, arm.flesh, ornaments, "/motions/0", diagnostics);
+    clip = bindMotion(motion, arm.figure(), ornaments, "/motions/0", diagnostics);
   }
   std::vector<std::string> errorPointers() const {
     std::vector<std::string> found;

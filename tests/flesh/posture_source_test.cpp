@@ -12,7 +12,7 @@ namespace {
 TEST(ClipSource, SaysWhatTheClipSaysBitForBit) {
   const test::Arm arm;
   const BoundClip clip = test::flexClip(arm);
-  const ClipSource source(arm.skeleton, clip);
+  const ClipSource source(arm.skeleton, arm.morphs, clip);
   EXPECT_EQ(source.info().name, "flex");
   EXPECT_EQ(source.info().duration_s, 2);
   EXPECT_TRUE(source.info().loop);
@@ -29,7 +29,7 @@ TEST(ClipSource, SaysWhatTheClipSaysBitForBit) {
     EXPECT_EQ(sample.parameters[0].value, parameters[0].value);
     EXPECT_EQ(sample.parameters[0].rate, parameters[0].rate);
     // What is fit already stays as it is.
-    admit(arm.skeleton, arm.flesh, {}, sample);
+    admit(arm.figure(), {}, sample);
     EXPECT_EQ(sample.posture.values, posture.values);
     EXPECT_EQ(sample.posture.rates, posture.rates);
     EXPECT_EQ(sample.parameters.size(), 1u);
@@ -48,7 +48,7 @@ TEST(PostureSource, IsAskedForNothingThatWouldBreakPosing) {
   sample.parameters = {{SolidId(99), 0, 1, 0},   {SolidId(), 0, 1, 0},  {thumb, 99, 1, 0},
                        {thumb, -1, 1, 0},        {thumb, 0, 1, 0, nan}, {thumb, 0, 1, 0, 2},
                        {thumb, 0, 0.4, 0.1, 0.5}};
-  admit(arm.skeleton, arm.flesh, {}, sample);
+  admit(arm.figure(), {}, sample);
   EXPECT_EQ(sample.posture.values[3], 0);
   EXPECT_EQ(sample.posture.rates[0], 0);
   EXPECT_TRUE(sample.posture.rotations.empty());

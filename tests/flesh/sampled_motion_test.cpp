@@ -69,7 +69,7 @@ struct Puppet {
   }
   BoundClip bind(Diagnostics& diagnostics) {
     skeleton = Skeleton(skeletonDef, "/skeleton", diagnostics);
-    return bindSampled(motion, frames, skeleton, "/rig", diagnostics);
+    return bindSampled(motion, frames, {skeleton, Flesh(), Morphs()}, "/rig", diagnostics);
   }
   BoundClip bind() {
     Diagnostics diagnostics;

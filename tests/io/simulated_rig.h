@@ -12,6 +12,7 @@
 #include <fascia/io/rig_export/rig_writer.h>
 #include <fascia/io/rig_import/rig_import.h>
 #include <fascia/rig/linear_blend.h>
+#include <fascia/rig/morph_blend.h>
 
 #include "gltf_sample.h"
 #include "sample.h"
@@ -21,7 +22,7 @@ namespace fascia::sample {
 // Where a point is in the bind pose at a time, in the place of the rest.
 using Bulge = std::function<Eigen::Vector3f(const Eigen::Vector3f& rest, double time_s)>;
 
-// A rig and a made-up simulation of it: its own skinning of bulging points.
+// A rig and a made-up simulation of it: its own skinning of bulging points, and its morphs.
 struct Simulated {
   RiggedModel model;
   Recording recording;
@@ -31,6 +32,19 @@ struct Simulated {
 
   RigClip clip() const { return {model, recording, joints_world, motion, scale}; }
 };
+
+// Of the model's morphs in one of its motions (-1: at rest).
+inline std::vector<double> weightsOf(const RiggedModel& model, int motion, double time_s) {
+  std::vector<double> weights;
+  for (const RigMorph& morph : model.morphs) {
+    weights.push_back(double{morph.rest});
+    if (motion < 0) continue;
+    const SampledMotion& moving = model.motions.at(static_cast<std::size_t>(motion));
+    for (std::size_t m = 0; m < moving.morphs.size(); ++m)
+      if (moving.morphs[m] == morph.name) weights.back() = sampleWeight(moving, m, time_s);
+  }
+  return weights;
+}
 
 inline Simulated simulate(const std::string& path, int motion, std::size_t frames, double rate_hz,
                           const Bulge& bulge, double scale = 1) {
@@ -52,6 +66,8 @@ inline Simulated simulate(const std::string& path, int motion, std::size_t frame
     LinearBlend(bulging).deform(moved, points);
     Recording::Frame& frame = out.recording.frames.emplace_back();
     frame.time_s = time;
+    frame.morphs = weightsOf(out.model, motion, time);
+    addMorphs(out.model, frame.morphs, moved, 1, points);
     for (const RigVertex& v : out.model.vertices) frame.skin_m.push_back(points[v.point]);
     out.joints_world.push_back(world);
   }

@@ -20,6 +20,7 @@ class Plain final : public PostureSource {
     out.posture.values[0] = time_s, out.posture.rates[0] = 1;
     out.parameters.clear();
     out.parameters.push_back({SolidId(0), 0, 0.06, 0});
+    out.morphs.weights.push_back(0.5), out.morphs.rates.push_back(0);
   }
 
  private:
@@ -30,12 +31,12 @@ TEST(TrackAllocation, SamplingMakesNoneAfterWarmUp) {
   const test::Figure figure;
   const Skeleton& skeleton = figure.skeleton;
   const Plain plain(figure);
-  StreamSource stream(skeleton, figure.flesh);
-  DragSource drag(skeleton, figure.flesh, stream);
-  BlendSource blend(skeleton, figure.flesh);
+  StreamSource stream(figure);
+  DragSource drag(figure, stream);
+  BlendSource blend(figure);
   blend.add(plain);
   blend.add(drag, {0.5, 0.5});
-  ReachSource reach(skeleton, figure.flesh, blend);
+  ReachSource reach(figure, blend);
   reach.add({figure.joint("shoulder"), figure.joint("wrist")}, [](double time_s) {
     ReachGoal goal;
     goal.position_m = Vec3(0.4, 1.5, 0.1 * time_s);
@@ -45,12 +46,12 @@ TEST(TrackAllocation, SamplingMakesNoneAfterWarmUp) {
   const Posture former = skeleton.restPosture();
   const auto frame = [&](int f) {
     const double time_s = f / 60.0;
-    plain.sample(time_s, pushed);
+    ask(plain, time_s, pushed);
     stream.push(time_s, pushed);
     stream.receive(time_s);
     drag.hold(time_s, 5, 0.01 * f);
     reach.sample(time_s, out);
-    admit(skeleton, figure.flesh, former, out);
+    admit(figure, former, out);
   };
   const long before = allocations;
   frame(0);

@@ -9,7 +9,7 @@ class Blending : public testing::Test {
  protected:
   test::Figure figure;
   test::Swing walk{figure, 1, true}, wave{figure, 2}, nod{figure, 3, true};
-  BlendSource blend{figure.skeleton, figure.flesh};
+  BlendSource blend{figure};
 
   test::Seen see(const PostureSource& source, double time_s) const {
     return {figure, source, time_s};

@@ -9,7 +9,7 @@ class Dragging : public testing::Test {
  protected:
   test::Figure figure;
   test::Swing walk{figure, 1, true};
-  DragSource drag{figure.skeleton, figure.flesh, walk};
+  DragSource drag{figure, walk};
   const std::size_t elbow = figure.value("elbow", Dof::ry);
 
   test::Seen see(double time_s) const { return {figure, drag, time_s}; }

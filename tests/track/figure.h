@@ -14,10 +14,14 @@ inline std::vector<DofDef> ballDofs() {
   return {{Dof::rx}, {Dof::ry}, {Dof::rz}};
 }
 
-// A hip that moves, a spine of ball joints, an arm: ball, hinge, hinge; on it a ball that swells.
+// A hip that moves, a spine of ball joints, an arm: ball, hinge, hinge; on it a ball that swells;
+// and a skin with two morphs.
 struct Figure {
   Skeleton skeleton;
   Flesh flesh;
+  Morphs morphs{{{"smile", 0}, {"frown", 0.25}}};
+
+  operator fascia::Figure() const { return {skeleton, flesh, morphs}; }  // NOLINT: one of these
 
   Figure() {
     SkeletonDef def;
@@ -64,6 +68,8 @@ class Swing final : public PostureSource {
     }
     out.parameters = {{SolidId(0), 0, 0.06 + 0.01 * std::sin(3 * time_s + double(seed_)),
                        0.03 * std::cos(3 * time_s + double(seed_))}};
+    out.morphs.weights = {0.5 + 0.4 * std::sin(2 * time_s + double(seed_)), 0.25};
+    out.morphs.rates = {0.8 * std::cos(2 * time_s + double(seed_)), 0};
   }
 
  private:
@@ -78,8 +84,8 @@ struct Seen {
   PosedSkeleton posed;
 
   Seen(const Figure& figure, const PostureSource& source, double time_s) {
-    source.sample(time_s, sample);
-    admit(figure.skeleton, figure.flesh, {}, sample);
+    ask(source, time_s, sample);
+    admit(figure, {}, sample);
     figure.skeleton.pose(sample.posture, posed);
   }
 };

@@ -11,7 +11,7 @@ class Reaching : public testing::Test {
  protected:
   test::Figure figure;
   test::Swing walk{figure, 5, true};
-  ReachSource reach{figure.skeleton, figure.flesh, walk};
+  ReachSource reach{figure, walk};
   const ReachChainDef arm{figure.joint("shoulder"), figure.joint("wrist"), kFingertip_m};
 
   test::Seen see(const PostureSource& source, double time_s) const {

@@ -11,7 +11,7 @@ class Streaming : public testing::Test {
  protected:
   test::Figure figure;
   test::Swing actor{figure, 4, true};
-  StreamSource stream{figure.skeleton, figure.flesh, {.delay_s = 0.1}};
+  StreamSource stream{figure, {.delay_s = 0.1}};
 
   void push(double time_s) {
     PostureSample sample;

@@ -3,6 +3,7 @@
 #include <fascia/rig/delta_mush.h>
 #include <fascia/rig/dual_quaternion.h>
 #include <fascia/rig/linear_blend.h>
+#include <fascia/rig/morph_blend.h>
 
 namespace fascia {
 namespace {
@@ -70,6 +71,7 @@ void Sides::points(std::size_t frame, Side side, std::vector<Eigen::Vector3f>& o
   if (side == Side::plain) {
     joints(frame, motion_);
     skinning_->deform(motion_, out);
+    addMorphs(model_, recording_.frames[frame].morphs, motion_, 1, out);
     return;
   }
   const std::vector<Eigen::Vector3f>& skin = recording_.frames[frame].skin_m;

@@ -33,19 +33,28 @@ Posture carryOver(const Skeleton& from, const Posture& posture, const Skeleton& 
   return out;
 }
 
+// Weights of morphs that go on; others rest.
+MorphPose carryOver(const Morphs& from, const MorphPose& pose, const Morphs& to) {
+  MorphPose out;
+  to.rest(out);
+  if (pose.weights.size() != from.size()) return out;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const int old = from.find(to[i].name);
+    if (old < 0) continue;
+    out.weights[i] = pose.weights[static_cast<std::size_t>(old)];
+    out.rates[i] = pose.rates[static_cast<std::size_t>(old)];
+  }
+  return out;
+}
+
 // What moved the character last goes on for the moment of the edit.
 class AsItIs final : public PostureSource {
  public:
-  AsItIs(const Posture& posture, const std::vector<Flesh::ParameterOverride>& parameters)
-      : posture_(posture), parameters_(parameters) {}
-  void sample(double, PostureSample& out) const override {
-    out.posture = posture_;
-    out.parameters = parameters_;
-  }
+  explicit AsItIs(PostureSample sample) : sample_(std::move(sample)) {}
+  void sample(double, PostureSample& out) const override { out = sample_; }
 
  private:
-  Posture posture_;
-  std::vector<Flesh::ParameterOverride> parameters_;
+  PostureSample sample_;
 };
 
 // Whether a body of the one is described by the same functions as one of the other.
@@ -93,12 +102,13 @@ CharacterState carryOver(const Character& from, const CharacterState& state, con
       out.bodies = carryOverBodies(from, state, to, out.skeleton);
     }
   }
-  poseLayers(to, AsItIs(out.posture, state.sampled.parameters), true, out);
+  out.morphs = carryOver(from.morphs(), state.morphs, to.morphs());
+  poseLayers(to, AsItIs({out.posture, state.sampled.parameters, out.morphs}), true, out);
   if (!to.skin()) {
     out.skin = {};
     return out;
   }
-  const SkinPose pose{&out.flesh, out.skeleton.joint_world};
+  const SkinPose pose{&out.flesh, out.skeleton.joint_world, out.morphs.weights};
   if (from.skin()) {
     out.skin = carryOver(*from.skin(), std::move(out.skin), *to.skin(), pose);
   } else {

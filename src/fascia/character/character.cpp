@@ -33,6 +33,10 @@ void showBodies(const OdeState& bodies, bool moving, CharacterState& state) {
   state.flesh.soft().update(bodies.r, state.stillBodies);
 }
 
+SkinPose skinPose(const CharacterState& state) {
+  return {&state.flesh, state.skeleton.joint_world, state.morphs.weights};
+}
+
 // Poses the layers below the skin at any time, in the state's own memory. Soft solids
 // are taken from the interval that was stepped last, or as the state has them.
 class LayerPoses final : public SkinPoseSource {
@@ -63,11 +67,11 @@ class LayerPoses final : public SkinPoseSource {
     character_.flesh().pose(state_.posture, state_.skeleton, state_.sampled.parameters,
                             state_.flesh.rigid());
     if (character_.softFlesh()) showSoft(time_s);
-    if (!surroundings_) return {&state_.flesh, state_.skeleton.joint_world};
+    if (!surroundings_) return skinPose(state_);
     all_.clear();
     all_.add(state_.flesh);
     all_.add(surroundings_->at(time_s));
-    return {&all_, state_.skeleton.joint_world};
+    return {&all_, state_.skeleton.joint_world, state_.morphs.weights};
   }
 
  private:
@@ -87,17 +91,19 @@ class LayerPoses final : public SkinPoseSource {
 
   void poseJoints(double time_s) {
     PostureSample& sampled = state_.sampled;
-    source_.sample(time_s, sampled);
+    ask(source_, time_s, sampled);
     sampled.parameters.insert(sampled.parameters.end(), state_.held.begin(), state_.held.end());
-    admit(character_.skeleton(), character_.flesh(), state_.posture, sampled);
+    admit(character_.figure(), state_.posture, sampled);
     if (!moving_) still(sampled);
     // The former posture's memory is the next sample's.
     std::swap(state_.posture, sampled.posture);
+    std::swap(state_.morphs, sampled.morphs);
     character_.skeleton().pose(state_.posture, state_.skeleton);
   }
 
   static void still(PostureSample& sampled) {
     std::ranges::fill(sampled.posture.rates, 0.0);
+    std::ranges::fill(sampled.morphs.rates, 0.0);
     for (JointRotation& turn : sampled.posture.rotations) turn.angular_rad_per_s.setZero();
     for (Flesh::ParameterOverride& p : sampled.parameters) p.rate = p.weightRate_per_s = 0;
   }
@@ -140,13 +146,15 @@ int Character::findMotion(std::string_view name) const {
 
 ClipSource Character::source(int motion) const {
   static const BoundClip kRest;  // without tracks
-  return {skeleton(), motion < 0 ? kRest : this->motion(static_cast<std::size_t>(motion))};
+  return {skeleton(), morphs(),
+          motion < 0 ? kRest : this->motion(static_cast<std::size_t>(motion))};
 }
 
 std::uint64_t hashOf(const Character& character, const CharacterState& state) {
   StateHash hash;
   hash.add(state.time_s);
   hash.add(state.posture.values.data(), state.posture.values.size() * sizeof(double));
+  hash.add(state.morphs.weights.data(), state.morphs.weights.size() * sizeof(double));
   hash.add(state.bodies.r.data(), state.bodies.r.size() * sizeof(double));
   hash.add(state.bodies.v.data(), state.bodies.v.size() * sizeof(double));
   for (const Flesh::ParameterOverride& p : state.held) {
@@ -185,7 +193,7 @@ CharacterState initialState(const Character& character, const PostureSource& sou
   poseLayers(character, source, false, state);
   if (character.softFlesh()) settleBodies(character, source, state);
   if (character.skin()) {
-    const SkinPose pose{&state.flesh, state.skeleton.joint_world};
+    const SkinPose pose = skinPose(state);
     placeSkin(*character.skin(), pose, state.skin);
     FrozenPoses frozen(pose);
     SkinStats ignored;

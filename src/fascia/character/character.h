@@ -32,6 +32,7 @@ struct CharacterParts {
   double interval_s = 0;                    // the only build option that no definition has
   std::shared_ptr<const Skeleton> skeleton;
   std::shared_ptr<const Flesh> flesh, ornaments;
+  std::shared_ptr<const Morphs> morphs;
   std::shared_ptr<const SoftFlesh> softFlesh;  // nullptr: no solid is soft
   std::shared_ptr<const Skin> skin;            // nullptr: none
   std::vector<std::shared_ptr<const BoundClip>> clips;
@@ -61,6 +62,9 @@ class Character {
   const CharacterDef& def() const { return *parts_.def; }
   const Skeleton& skeleton() const { return *parts_.skeleton; }
   const Flesh& flesh() const { return *parts_.flesh; }
+  const Morphs& morphs() const { return *parts_.morphs; }  // of a rig's mesh; else none
+  // What sources are made for.
+  Figure figure() const { return {skeleton(), flesh(), morphs()}; }
   // Rigid: seen, but not felt by the skin.
   const Flesh& ornaments() const { return *parts_.ornaments; }
   const Skin* skin() const { return parts_.skin.get(); }  // nullptr: a character without skin
@@ -84,6 +88,7 @@ class Character {
 struct CharacterState {
   double time_s = 0;
   Posture posture;
+  MorphPose morphs;
   PosedSkeleton skeleton;
   OdeState bodies;  // of the soft solids
   LayeredFlesh flesh;
@@ -99,7 +104,7 @@ struct CharacterState {
   std::vector<double> stillBodies;  // velocities of none
 };
 
-// Over time, posture, soft solids and skin: equal exactly when the states are.
+// Over time, posture, morphs, soft solids and skin: equal exactly when the states are.
 std::uint64_t hashOf(const Character& character, const CharacterState& state);
 
 // The state at time 0 of what moves the character, settled for simulation.settle_s.

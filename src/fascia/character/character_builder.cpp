@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include <fascia/base/suggest.h>
 #include <fascia/character/idle_settings.h>
 #include <fascia/flesh/bind.h>
 #include <fascia/skin/ode_skin.h>
@@ -54,6 +55,12 @@ bool sameStructure(const FleshDef& a, const FleshDef& b) {
   });
 }
 
+// Names aside.
+bool sameMesh(const std::optional<RigDef>& a, const std::optional<RigDef>& b) {
+  if (!a || !b) return !a && !b;
+  return a->file == b->file && a->scale == b->scale && a->model == b->model;
+}
+
 }  // namespace
 
 CharacterBuilder::CharacterBuilder(std::shared_ptr<const CharacterDef> def, double interval_s,
@@ -68,6 +75,8 @@ CharacterParts CharacterBuilder::build() {
   // Joints are referred to by name everywhere below: without them more messages would mislead.
   diagnostics_.throwIfErrors();
   makeFlesh();
+  makeMorphs();
+  checkRigNames();
   const bool hasFlesh = diagnostics_.ok();
   if (hasFlesh) makeSoftFlesh();
   validateTunables(def().simulation, "/simulation", diagnostics_);
@@ -103,6 +112,33 @@ void CharacterBuilder::makeFlesh() {
   else
     parts_.ornaments = std::make_shared<Flesh>(def().ornaments, *parts_.skeleton, "/ornaments",
                                                diagnostics_, Flesh::Role::ornament);
+}
+
+void CharacterBuilder::makeMorphs() {
+  std::vector<MorphDef> list;
+  if (def().rig && def().rig->model)
+    for (const RigMorph& morph : def().rig->model->morphs)
+      list.push_back({morph.name, double{morph.rest}});
+  auto morphs = std::make_shared<Morphs>(std::move(list));
+  const bool keeps = before_ && *before_->morphs == *morphs;
+  parts_.morphs = keeps ? before_->morphs : std::move(morphs);
+}
+
+void CharacterBuilder::checkRigNames() {
+  if (!def().rig || !def().rig->model) return;
+  const std::vector<RigJoint>& joints = def().rig->model->joints;
+  const std::vector<RigJointNameDef>& names = def().rig->joint_names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string pointer = "/rig/joint_names/" + std::to_string(i);
+    if (std::ranges::find(joints, names[i].joint, &RigJoint::name) == joints.end())
+      diagnostics_.error(pointer + "/joint", "the rig has no joint " + quotedName(names[i].joint));
+    const auto same = [&](const RigJointNameDef& other) {
+      return other.joint == names[i].joint || other.name == names[i].name;
+    };
+    const auto before = names.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find_if(names.begin(), before, same) != before)
+      diagnostics_.error(pointer, "the joint or its name stands before already");
+  }
 }
 
 void CharacterBuilder::checkSoftness() {
@@ -149,7 +185,7 @@ void CharacterBuilder::makeSoftFlesh() {
 
 // Whether motions find joints, solids and parameters under the numbers that they had.
 bool CharacterBuilder::keepsBindings() const {
-  return before_ &&
+  return before_ && before_->morphs == parts_.morphs &&
          (before_->skeleton == parts_.skeleton ||
           sameStructure(before_->def->skeleton, def().skeleton)) &&
          (before_->flesh == parts_.flesh || sameStructure(before_->def->flesh, def().flesh)) &&
@@ -165,8 +201,9 @@ void CharacterBuilder::bindMotions() {
     if (keeps && i < before_->def->motions.size() && before_->def->motions[i] == motions[i])
       parts_.clips.push_back(before_->clips[i]);
     else
-      parts_.clips.push_back(std::make_shared<BoundClip>(bindMotion(
-          motions[i], *parts_.skeleton, *parts_.flesh, *parts_.ornaments, pointer, diagnostics_)));
+      parts_.clips.push_back(std::make_shared<BoundClip>(
+          bindMotion(motions[i], {*parts_.skeleton, *parts_.flesh, *parts_.morphs},
+                     *parts_.ornaments, pointer, diagnostics_)));
     const auto before = motions.begin() + static_cast<std::ptrdiff_t>(i);
     if (std::find_if(motions.begin(), before,
                      [&](const MotionDef& m) { return m.name == motions[i].name; }) != before)
@@ -182,10 +219,12 @@ void CharacterBuilder::bindRigMotions() {
   const bool keeps =
       before_ && before_->skeleton == parts_.skeleton && before_->def->rig == def().rig;
   std::vector<SampledFrame> frames;
-  for (const RigJoint& j : model->joints)
-    frames.push_back({j.name,
-                      j.parent < 0 ? "" : model->joints[static_cast<std::size_t>(j.parent)].name,
-                      j.rest_world});
+  const std::vector<std::string> names = def().rig->jointNames();
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const int parent = model->joints[j].parent;
+    frames.push_back({names[j], parent < 0 ? "" : names[static_cast<std::size_t>(parent)],
+                      model->joints[j].rest_world});
+  }
   for (const SampledMotion& motion : model->motions) {
     if (std::ranges::any_of(parts_.clips, [&](const auto& c) { return c->name == motion.name; }))
       continue;
@@ -199,8 +238,8 @@ void CharacterBuilder::bindRigMotions() {
     }
     // Shares the ownership of the whole model.
     parts_.clips.push_back(std::make_shared<BoundClip>(
-        bindSampled(std::shared_ptr<const SampledMotion>(model, &motion), frames, *parts_.skeleton,
-                    "/rig", diagnostics_)));
+        bindSampled(std::shared_ptr<const SampledMotion>(model, &motion), frames,
+                    {*parts_.skeleton, *parts_.flesh, *parts_.morphs}, "/rig", diagnostics_)));
     if (!diagnostics_.ok()) return;
   }
 }
@@ -208,9 +247,9 @@ void CharacterBuilder::bindRigMotions() {
 void CharacterBuilder::makeSkin() {
   if (!def().skin) return;
   const RiggedModel* rig = def().rig ? def().rig->model.get() : nullptr;
-  const bool sameRig = before_ && before_->skin && before_->def->rig == def().rig;
-  const bool sameBelow = sameRig && before_->skeleton == parts_.skeleton &&
-                         before_->flesh == parts_.flesh &&
+  const bool sameRig = before_ && before_->skin && sameMesh(before_->def->rig, def().rig);
+  const bool sameBelow = sameRig && before_->def->rig == def().rig &&
+                         before_->skeleton == parts_.skeleton && before_->flesh == parts_.flesh &&
                          before_->def->simulation == def().simulation;
   if (sameBelow && before_->def->skin == def().skin) {
     parts_.skin = before_->skin;
@@ -221,9 +260,11 @@ void CharacterBuilder::makeSkin() {
   const Posture rest = parts_.skeleton->restPosture();
   parts_.skeleton->pose(rest, posedSkeleton);
   parts_.flesh->pose(rest, posedSkeleton, {}, posedFlesh);
+  const std::vector<std::string> rigJoints =
+      rig ? def().rig->jointNames() : std::vector<std::string>();
   parts_.skin = std::make_shared<Skin>(
       *def().skin, settingsOf(def().simulation, parts_.interval_s),
-      SkinBase{*parts_.skeleton, *parts_.flesh, posedSkeleton, posedFlesh, rig}, "/skin",
+      SkinBase{*parts_.skeleton, *parts_.flesh, posedSkeleton, posedFlesh, rig, rigJoints}, "/skin",
       diagnostics_, sameRig ? before_->skin.get() : nullptr);
   checkIntegrator();
 }

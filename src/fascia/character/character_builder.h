@@ -21,12 +21,14 @@ class CharacterBuilder {
  private:
   void makeSkeleton();
   void makeFlesh();
+  void makeMorphs();
   void makeSoftFlesh();
   void checkSoftness();
   bool keepsSoftFlesh() const;
   bool keepsBindings() const;
   void bindMotions();
   void bindRigMotions();
+  void checkRigNames();
   void makeSkin();
   void checkIntegrator();
 

@@ -55,13 +55,26 @@ constexpr auto tunables(const SimulationDef*) {
               "Simulated before time 0 in the first posture")};
 }
 
+// A joint of a rig that the character calls otherwise than the rig's file.
+struct RigJointNameDef {
+  std::string joint;  // in the file
+  std::string name;   // in the character's skeleton
+  bool operator==(const RigJointNameDef&) const = default;
+};
+
 // An imported, skinned mesh that is the character's skin instead of a grid. Its joints are found by
 // name in the character's skeleton; its motions can be played by name like the character's own.
 struct RigDef {
   std::string file;  // glTF beside the character file
   double scale = 1;
-  std::shared_ptr<const RiggedModel> model;  // read from the file; not saved
+  std::shared_ptr<const RiggedModel> model{};  // read from the file, whose names it has; not saved
+  std::vector<RigJointNameDef> joint_names{};  // of joints that were renamed
   bool operator==(const RigDef&) const = default;
+
+  // What the character calls a joint of the file.
+  const std::string& nameOf(const std::string& joint) const;
+  // … and all joints of the model, which must have been read.
+  std::vector<std::string> jointNames() const;
 };
 constexpr auto tunables(const RigDef*) {
   return std::tuple{tunable(&RigDef::scale, "scale", "", {1e-6, 1e6},

@@ -26,9 +26,9 @@ CharacterState carryOver(const Character& from, const CharacterState& state, con
 // Throws Error if a state is not one of this character: other numbers of points or bodies.
 void requireFits(const Character& character, const CharacterState& state);
 
-// Renames a joint or a solid of the flesh wherever the definition refers to it. Throws Error if
-// there is none of that name, if the new name is empty or taken, or if the joint is one of an
-// imported rig, whose file knows it by its name.
+// Renames a joint or a solid of the flesh wherever the definition refers to it. A joint of a rig
+// goes on to be found in its file by the name that it has there (RigDef::joint_names). Throws Error
+// if there is none of that name, if the new name is empty or taken, or if the rig was not read yet.
 void renameJoint(CharacterDef& def, const std::string& from, const std::string& to);
 void renameSolid(CharacterDef& def, const std::string& from, const std::string& to);
 

@@ -30,8 +30,12 @@ void keepFrame(const Character& character, const CharacterState& state, bool kep
     if (!character.skin()->rigged()) measureFaces(state.flesh, out.skin, out.stats);
   }
   if (!kept) return;
-  out.frames.push_back(
-      {state.time_s, state.posture.values, out.skin.positions, {}, state.sampled.parameters});
+  out.frames.push_back({state.time_s,
+                        state.posture.values,
+                        out.skin.positions,
+                        {},
+                        state.sampled.parameters,
+                        state.morphs.weights});
   if (const auto& soft = character.softFlesh())
     out.frames.back().soft_shapes = soft->shapes(state.bodies);
 }

@@ -16,6 +16,7 @@ struct Recording {
     std::vector<Eigen::Vector3f> skin_m;  // vertices in skinSurface order; may be empty
     std::vector<double> soft_shapes;      // SoftFlesh::shapes; empty without soft solids
     std::vector<Flesh::ParameterOverride> parameters{};  // that the source animated; not in caches
+    std::vector<double> morphs{};                        // weights, one per morph
   };
   std::string motion;  // PostureSource::Info::name; empty = none of the character's
   double frame_rate_hz = 60;

@@ -37,13 +37,27 @@ class Renaming {
   std::string from_, to_;  // own: the arguments may be parts of the definition
 };
 
+// The rig's file goes on to call it as it does.
+void renameInRig(RigDef& rig, const std::string& from, const std::string& to) {
+  const auto renamed = std::ranges::find(rig.joint_names, from, &RigJointNameDef::name);
+  if (renamed != rig.joint_names.end()) {
+    renamed->name = to;
+    if (renamed->joint == to) rig.joint_names.erase(renamed);
+    return;
+  }
+  if (!rig.model) throw Error("the rig has to be read before joints are renamed");
+  const auto isRenamed = [&](const RigJointNameDef& name) { return name.joint == from; };
+  if (hasName(rig.model->joints, from) && from != to &&
+      std::ranges::none_of(rig.joint_names, isRenamed))
+    rig.joint_names.push_back({from, to});
+}
+
 }  // namespace
 
 void renameJoint(CharacterDef& def, const std::string& from, const std::string& to) {
   requireRenamable(def.skeleton.joints, "joint", from, to);
-  if (def.rig && def.rig->model && hasName(def.rig->model->joints, from))
-    throw Error("the joint '" + from + "' is one of the imported rig, which knows it by its name");
   const Renaming rename(from, to);
+  if (def.rig) renameInRig(*def.rig, from, to);
   for (JointDef& joint : def.skeleton.joints) rename(joint.name), rename(joint.parent);
   for (FleshDef* flesh : {&def.flesh, &def.ornaments})
     for (FleshSolidDef& solid : flesh->solids) {
@@ -54,6 +68,7 @@ void renameJoint(CharacterDef& def, const std::string& from, const std::string& 
   if (!def.skin) return;
   rename(def.skin->grid.bottom.joint), rename(def.skin->grid.top.joint);
   for (SkinBrushDef& brush : def.skin->brushes) rename(brush.joint);
+  for (SkinRegionDef& region : def.skin->regions) rename(region.joint);
 }
 
 void renameSolid(CharacterDef& def, const std::string& from, const std::string& to) {

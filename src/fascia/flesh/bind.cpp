@@ -62,23 +62,50 @@ SolidId bindSolid(const TrackDef& track, const Flesh& flesh, const Flesh& orname
   return {};
 }
 
-void bindTrack(const TrackDef& track, const Skeleton& skeleton, const Flesh& flesh,
-               const Flesh& ornaments, const std::string& pointer, Diagnostics& diagnostics,
-               double period_s, BoundClip& clip) {
-  if (track.name.empty() || track.channel.empty()) return;  // reported by validateMotion
-  if (track.target == TrackDef::Target::joint) {
-    const int value = bindJoint(track, skeleton, pointer, diagnostics);
-    if (value >= 0) clip.joints.push_back({value, KeySpline(track.keys, period_s)});
-    return;
-  }
-  const SolidId solid = bindSolid(track, flesh, ornaments, pointer, diagnostics);
+// Index into Morphs; -1 after an error.
+int bindMorph(const std::string& name, const Morphs& morphs, const std::string& pointer,
+              Diagnostics& diagnostics) {
+  const int morph = morphs.find(name);
+  if (morph >= 0) return morph;
+  NearestName nearest(name);
+  for (std::size_t i = 0; i < morphs.size(); ++i) nearest.offer(morphs[i].name);
+  diagnostics.error(
+      pointer, "unknown morph " + quotedName(name),
+      morphs.size() > 0 ? nearest.hint() : "the character has none: they come with a rig's file");
+  return -1;
+}
+
+void bindSolidTrack(const TrackDef& track, const Figure& figure, const Flesh& ornaments,
+                    const std::string& pointer, Diagnostics& diagnostics, double period_s,
+                    BoundClip& clip) {
+  const SolidId solid = bindSolid(track, figure.flesh, ornaments, pointer, diagnostics);
   if (!solid.valid()) return;
-  const Solid& rest = flesh.restSolid(solid);
+  const Solid& rest = figure.flesh.restSolid(solid);
   const int parameter = resolveParameter(rest, track.channel, pointer + "/parameter", diagnostics);
   if (parameter < 0) return;
   const ParameterInfo& info = rest.parameterInfo(parameter);
   warnOutside(track.keys, info.min, info.max, pointer, diagnostics);
   clip.solids.push_back({solid.value, parameter, KeySpline(track.keys, period_s)});
+}
+
+void bindTrack(const TrackDef& track, const Figure& figure, const Flesh& ornaments,
+               const std::string& pointer, Diagnostics& diagnostics, double period_s,
+               BoundClip& clip) {
+  if (track.name.empty()) return;  // reported by validateMotion
+  if (track.target == TrackDef::Target::morph) {
+    const int morph = bindMorph(track.name, figure.morphs, pointer + "/morph", diagnostics);
+    if (morph < 0) return;
+    warnOutside(track.keys, -kMostMorphWeight, kMostMorphWeight, pointer, diagnostics);
+    clip.morphs.push_back({static_cast<std::size_t>(morph), KeySpline(track.keys, period_s)});
+    return;
+  }
+  if (track.channel.empty()) return;  // as above
+  if (track.target == TrackDef::Target::solid) {
+    bindSolidTrack(track, figure, ornaments, pointer, diagnostics, period_s, clip);
+    return;
+  }
+  const int value = bindJoint(track, figure.skeleton, pointer, diagnostics);
+  if (value >= 0) clip.joints.push_back({value, KeySpline(track.keys, period_s)});
 }
 
 constexpr Dof kAllDofs[] = {Dof::tx, Dof::ty, Dof::tz, Dof::rx, Dof::ry, Dof::rz};
@@ -127,8 +154,9 @@ void sampleFrames(const BoundClip& clip, double time_s, Posture& posture) {
 }  // namespace
 
 BoundClip bindSampled(std::shared_ptr<const SampledMotion> motion,
-                      std::span<const SampledFrame> frames, const Skeleton& skeleton,
+                      std::span<const SampledFrame> frames, const Figure& figure,
                       const std::string& pointer, Diagnostics& diagnostics) {
+  const Skeleton& skeleton = figure.skeleton;
   BoundClip clip;
   clip.name = motion->name;
   clip.duration_s = motion->duration_s();
@@ -165,21 +193,24 @@ BoundClip bindSampled(std::shared_ptr<const SampledMotion> motion,
     clip.sampledJoints.push_back(
         {i, static_cast<std::size_t>(first), before, change(frames[i], joint)});
   }
+  for (std::size_t i = 0; i < motion->morphs.size(); ++i) {
+    const int morph = bindMorph(motion->morphs[i], figure.morphs, pointer, diagnostics);
+    if (morph >= 0) clip.sampledMorphs.push_back({i, static_cast<std::size_t>(morph)});
+  }
   clip.sampled = std::move(motion);
   return clip;
 }
 
-BoundClip bindMotion(const MotionDef& motion, const Skeleton& skeleton, const Flesh& flesh,
-                     const Flesh& ornaments, const std::string& pointer, Diagnostics& diagnostics) {
+BoundClip bindMotion(const MotionDef& motion, const Figure& figure, const Flesh& ornaments,
+                     const std::string& pointer, Diagnostics& diagnostics) {
   validateMotion(motion, pointer, diagnostics);
   BoundClip clip;
   clip.name = motion.name;
   clip.duration_s = playedDuration_s(motion);
   clip.loop = motion.loop;
   for (std::size_t i = 0; i < std::min(motion.tracks.size(), kMostTracks); ++i) {
-    bindTrack(motion.tracks[i], skeleton, flesh, ornaments,
-              pointer + "/tracks/" + std::to_string(i), diagnostics,
-              clip.loop ? clip.duration_s : 0, clip);
+    bindTrack(motion.tracks[i], figure, ornaments, pointer + "/tracks/" + std::to_string(i),
+              diagnostics, clip.loop ? clip.duration_s : 0, clip);
   }
   return clip;
 }
@@ -211,6 +242,26 @@ void sampleParameters(const BoundClip& clip, double time_s,
     overrides.push_back({SolidId{static_cast<std::int64_t>(track.solid)}, track.parameter,
                          sample.value, sample.rate});
   }
+}
+
+void sampleMorphs(const BoundClip& clip, const Morphs& morphs, double time_s, MorphPose& out) {
+  morphs.rest(out);
+  for (const BoundClip::MorphTrack& track : clip.morphs) {
+    FASCIA_ASSERT(track.morph < morphs.size(), "the clip is bound to these morphs");
+    const SplineSample sample = track.spline.at(time_s);
+    out.weights[track.morph] = sample.value;
+    out.rates[track.morph] = sample.rate;
+  }
+  const bool still = !clip.loop && (time_s <= 0 || time_s >= clip.duration_s);
+  for (const BoundClip::SampledMorph& track : clip.sampledMorphs) {
+    FASCIA_ASSERT(track.morph < morphs.size(), "the clip is bound to these morphs");
+    const auto at = [&](double t_s) { return sampleWeight(*clip.sampled, track.sample, t_s); };
+    out.weights[track.morph] = at(time_s);
+    if (!still)
+      out.rates[track.morph] =
+          (at(time_s + kRateSpan_s) - at(time_s - kRateSpan_s)) / (2 * kRateSpan_s);
+  }
+  morphs.admit(out);
 }
 
 }  // namespace fascia

@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include <fascia/flesh/flesh.h>
+#include <fascia/flesh/posture_source.h>
 #include <fascia/motion/clip.h>
 
 namespace fascia {
 
-// Finds the joints and parameters that a motion names. Reports every fault of `motion`, also those
-// of validateMotion; with errors the result must not be used. Ornaments are rigid: they are asked
-// for only to say so. Pointers start with `pointer`, e.g. "/motions/0".
-BoundClip bindMotion(const MotionDef& motion, const Skeleton& skeleton, const Flesh& flesh,
-                     const Flesh& ornaments, const std::string& pointer, Diagnostics& diagnostics);
+// Finds the joints, parameters and morphs that a motion names. Reports every fault of `motion`,
+// also those of validateMotion; with errors the result must not be used. Ornaments are rigid: they
+// are asked for only to say so. Pointers start with `pointer`, e.g. "/motions/0".
+BoundClip bindMotion(const MotionDef& motion, const Figure& figure, const Flesh& ornaments,
+                     const std::string& pointer, Diagnostics& diagnostics);
 
 // The frames that a sampled motion means by a joint, in the skeleton's rest posture.
 struct SampledFrame {
@@ -23,10 +23,10 @@ struct SampledFrame {
   Transform rest_world;
 };
 
-// A motion that came as frames, for the joints of the skeleton that it names; `frames` has one
-// entry per joint of the motion. A joint must have all six degrees of freedom, in their order.
+// A motion that came as frames, for the joints and morphs of the figure that it names; `frames` has
+// one entry per joint of the motion. A joint must have all six degrees of freedom, in their order.
 BoundClip bindSampled(std::shared_ptr<const SampledMotion> motion,
-                      std::span<const SampledFrame> frames, const Skeleton& skeleton,
+                      std::span<const SampledFrame> frames, const Figure& figure,
                       const std::string& pointer, Diagnostics& diagnostics);
 
 // The posture at a time: rest where no track says otherwise, within the joints' limits.
@@ -38,5 +38,9 @@ void samplePosture(const BoundClip& clip, const Skeleton& skeleton, double time_
 // allocation-free after the first call with the same `overrides`.
 void sampleParameters(const BoundClip& clip, double time_s,
                       std::vector<Flesh::ParameterOverride>& overrides);
+
+// The weights of all morphs at a time: at rest where no track says otherwise. Allocation-free after
+// the first call with the same `out`.
+void sampleMorphs(const BoundClip& clip, const Morphs& morphs, double time_s, MorphPose& out);
 
 }  // namespace fascia

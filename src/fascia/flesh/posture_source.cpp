@@ -17,8 +17,8 @@ bool weighs(const Flesh::ParameterOverride& o) {
 
 }  // namespace
 
-void admit(const Skeleton& skeleton, const Flesh& flesh, const Posture& former,
-           PostureSample& sample) {
+void admit(const Figure& figure, const Posture& former, PostureSample& sample) {
+  const Skeleton& skeleton = figure.skeleton;
   Posture& posture = sample.posture;
   const std::size_t count = skeleton.valueCount();
   for (std::size_t i = posture.values.size(); i < count; ++i)
@@ -27,8 +27,22 @@ void admit(const Skeleton& skeleton, const Flesh& flesh, const Posture& former,
   posture.rates.resize(count);
   skeleton.resolveRotations(former.values, posture);
   skeleton.clampToLimits(posture);
-  std::erase_if(sample.parameters,
-                [&](const Flesh::ParameterOverride& o) { return !exists(flesh, o) || !weighs(o); });
+  std::erase_if(sample.parameters, [&](const Flesh::ParameterOverride& o) {
+    return !exists(figure.flesh, o) || !weighs(o);
+  });
+  figure.morphs.admit(sample.morphs);
+}
+
+void ask(const PostureSource& source, double time_s, PostureSample& out) {
+  out.morphs.weights.clear();
+  out.morphs.rates.clear();
+  source.sample(time_s, out);
+}
+
+void sampleFit(const PostureSource& source, const Figure& figure, double time_s,
+               PostureSample& out) {
+  ask(source, time_s, out);
+  admit(figure, {}, out);
 }
 
 }  // namespace fascia

@@ -5,9 +5,17 @@
 #include <vector>
 
 #include <fascia/flesh/flesh.h>
+#include <fascia/flesh/morphs.h>
 #include <fascia/skeleton/skeleton.h>
 
 namespace fascia {
+
+// What a source moves. Borrowed: all parts must outlive whoever is given it.
+struct Figure {
+  const Skeleton& skeleton;
+  const Flesh& flesh;
+  const Morphs& morphs;
+};
 
 // What a source says about one moment.
 struct PostureSample {
@@ -16,16 +24,19 @@ struct PostureSample {
   Posture posture;
   // Solid parameters that are animated; rates and weights' rates likewise.
   std::vector<Flesh::ParameterOverride> parameters;
+  // By morph; those that are missing rest.
+  MorphPose morphs{};
 };
 
 // Whatever moves a character: a clip, a blend of others, a hand, a live stream. It is made for one
-// skeleton and its flesh.
+// figure.
 class PostureSource {
  public:
   virtual ~PostureSource() = default;
 
   // The posture at any time, also before the last one that was asked for. A function of time alone
-  // until somebody changes the source between two frames. Replaces all that `out` held; allocates
+  // until somebody changes the source between two frames. Replaces all that `out` held, but for
+  // morphs, which rest when it is asked: a source that knows of none need not mind them. Allocates
   // nothing after the first calls with the same `out`; never throws. A source that needs memory of
   // its own keeps it: such are for one thread at a time.
   virtual void sample(double time_s, PostureSample& out) const = 0;
@@ -40,9 +51,13 @@ class PostureSource {
 };
 
 // Makes what a source said fit for posing, whatever it said: rotations resolved near the angles of
-// a former posture (empty: near those of rest), values within limits, no parameter of a solid that
-// there is not.
-void admit(const Skeleton& skeleton, const Flesh& flesh, const Posture& former,
-           PostureSample& sample);
+// a former posture (empty: near those of rest), values and weights within limits, no parameter of a
+// solid and no weight of a morph that there is not.
+void admit(const Figure& figure, const Posture& former, PostureSample& sample);
+// Asks a source, with morphs at rest.
+void ask(const PostureSource& source, double time_s, PostureSample& out);
+// … and makes fit what it said, near the angles of rest.
+void sampleFit(const PostureSource& source, const Figure& figure, double time_s,
+               PostureSample& out);
 
 }  // namespace fascia

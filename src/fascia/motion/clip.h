@@ -52,6 +52,10 @@ struct BoundClip {
     int solid, parameter;  // SolidId and its parameter index
     KeySpline spline;
   };
+  struct MorphTrack {
+    std::size_t morph;  // in Morphs
+    KeySpline spline;
+  };
   std::string name;
   double duration_s = 0;
   bool loop = false;
@@ -64,8 +68,14 @@ struct BoundClip {
   };
   std::vector<JointTrack> joints;
   std::vector<SolidTrack> solids;
+  std::vector<MorphTrack> morphs;
   std::shared_ptr<const SampledMotion> sampled;  // may be null
   std::vector<SampledJoint> sampledJoints;
+  struct SampledMorph {
+    std::size_t sample;  // index into SampledMotion::morphs
+    std::size_t morph;   // in Morphs
+  };
+  std::vector<SampledMorph> sampledMorphs;
 };
 
 }  // namespace fascia

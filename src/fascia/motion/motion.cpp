@@ -60,11 +60,12 @@ void validateLoop(const MotionDef& motion, const std::vector<Key>& keys, const s
 void validateTrack(const MotionDef& motion, const TrackDef& track, const std::string& pointer,
                    Diagnostics& diagnostics) {
   const bool joint = track.target == TrackDef::Target::joint;
+  const bool morph = track.target == TrackDef::Target::morph;
   if (track.name.empty()) {
-    diagnostics.error(pointer + (joint ? "/joint" : "/solid"),
-                      joint ? "a track needs a joint's name" : "a track needs a solid's name");
+    const std::string kind = joint ? "joint" : morph ? "morph" : "solid";
+    diagnostics.error(pointer + "/" + kind, "a track needs a " + kind + "'s name");
   }
-  if (track.channel.empty()) {
+  if (track.channel.empty() && !morph) {
     diagnostics.error(pointer + (joint ? "/dof" : "/parameter"),
                       joint ? "a track needs a degree of freedom: tx, ty, tz, rx, ry or rz"
                             : "a track needs a parameter's name");

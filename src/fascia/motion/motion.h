@@ -13,7 +13,7 @@ namespace fascia {
 // [-1, 1]; all zero gives Catmull–Rom.
 struct Key {
   double time_s = 0;
-  double value = 0;  // metre or radian; a solid's parameter: its own unit
+  double value = 0;  // metre or radian; a solid's parameter: its own unit; a morph: its weight
   double tension = 0, continuity = 0, bias = 0;
   bool operator==(const Key&) const = default;
 };
@@ -29,12 +29,12 @@ constexpr auto tunables(const Key*) {
 inline constexpr TunableInfo kKeyValue{
     "value", "", {-1e6, 1e6}, "Of a solid's parameter, in its own unit"};
 
-// One animated number: a joint's degree of freedom or a solid's parameter.
+// One animated number: a joint's degree of freedom, a solid's parameter or a morph's weight.
 struct TrackDef {
-  enum class Target { joint, solid };
+  enum class Target { joint, solid, morph };
   Target target = Target::joint;
-  std::string name;       // of the joint or solid
-  std::string channel;    // "tx"…"rz", or the parameter's name, e.g. "radius_m"
+  std::string name;     // of the joint, solid or morph
+  std::string channel;  // "tx"…"rz", or the parameter's name, e.g. "radius_m"; of a morph: empty
   std::vector<Key> keys;  // times increase; at least one
   bool operator==(const TrackDef&) const = default;
 };

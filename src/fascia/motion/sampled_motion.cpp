@@ -84,4 +84,14 @@ Transform sampleJoint(const SampledMotion& motion, std::size_t joint, double tim
   return {turn.cast<double>().toRotationMatrix(), smooth(places, at).cast<double>()};
 }
 
+double sampleWeight(const SampledMotion& motion, std::size_t morph, double time_s) {
+  FASCIA_ASSERT(morph < motion.morphs.size(), "the motion has the morph");
+  using Number = Eigen::Matrix<float, 1, 1>;
+  const Around at = around(motion, time_s);
+  std::array<Number, 4> weights;
+  for (std::size_t i = 0; i < 4; ++i)
+    weights[i][0] = motion.weights[at.frame[i] * motion.morphs.size() + morph];
+  return double{smooth(weights, at)[0]};
+}
+
 }  // namespace fascia

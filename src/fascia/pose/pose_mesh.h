@@ -18,6 +18,7 @@ struct PoseSource {
   std::span<const PointWeights> weights;  // per point
   std::span<const std::array<std::uint32_t, 3>> triangles;
   std::span<const RigJoint> joints;  // parents before children
+  std::span<const RigMorph> morphs{};
 };
 
 // The rest shape as a graph: each point's neighbours along edges, and beside those the points of

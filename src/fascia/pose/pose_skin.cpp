@@ -48,6 +48,7 @@ PoseSkin::Shape::Shape(const PoseSource& source, const std::vector<char>& rigidP
     if (rigid[i]) softness[i] = 0;
   press = LimbPress(source, mesh, parts, softness);
   nesting = ShellNesting(source, mesh, rigid);
+  morphs = MorphShapes(source, mesh.size());
 }
 
 PoseSkin::PoseSkin(const PoseSource& source, const PoseDials& dials)
@@ -146,6 +147,7 @@ void PoseSkin::evaluate(std::span<const Transform> motion, const Moment& moment,
                        scratch.rotation, scratch.contact);
   elastic_->relax(scratch.rotation, scratch.position, scratch.elastic);
   displaceFlesh(scratch);
+  shape_->morphs.move(moment.morphs, scratch.rotation, scratch.position);
   if (moment.jiggle && jiggle_->nodeCount() > 0) {
     jiggle_->step(moment.dt_s, scratch.position, origin, *moment.jiggle);
     jiggle_->add(*moment.jiggle, scratch.shown, scratch.position);

@@ -12,6 +12,7 @@
 #include <fascia/pose/joint_volume.h>
 #include <fascia/pose/limb_contact.h>
 #include <fascia/pose/limb_press.h>
+#include <fascia/pose/morph_shapes.h>
 #include <fascia/pose/muscle_swell.h>
 #include <fascia/pose/pose_mesh.h>
 #include <fascia/pose/shell_nesting.h>
@@ -37,6 +38,7 @@ struct PoseDials {
 //   elastic_layer   one prefactored solve for the skin that bends least
 //   joint_volume    what a bend took away comes out around it
 //   muscle_swell    flexors swell, extensors thin
+//   morph_shapes    morph targets, by their weights
 //   jiggle          flesh swings behind
 //   dents           props press in
 //   limb_press      limbs that share no crease press on each other
@@ -66,6 +68,7 @@ class PoseSkin {
     double dt_s = 0;                           // since the last frame of `jiggle`, > 0
     JiggleState* jiggle = nullptr;             // takes a step; none: no jiggle
     const PoseObstacles* obstacles = nullptr;  // none: nothing stands around
+    std::span<const double> morphs{};          // weights, one each; empty: all at rest
   };
 
   PoseSkin(const PoseSource& source, const PoseDials& dials);
@@ -79,6 +82,7 @@ class PoseSkin {
   const PoseMesh& mesh() const { return shape_->mesh; }
   const LimbParts& parts() const { return *shape_->parts; }
   std::span<const char> rigid() const { return shape_->rigid; }
+  std::size_t morphCount() const { return shape_->morphs.size(); }
   bool has(const PoseDials& dials) const;  // whether these dials change nothing
 
   // The skin's points, world, m, into the first pointCount() entries of `out`. `motion` per joint:
@@ -100,6 +104,7 @@ class PoseSkin {
     SkinSpread spread;  // read while stages are made
     LimbPress press;
     ShellNesting nesting;
+    MorphShapes morphs;
   };
   void makeStages(const PoseSource& source, const PoseDials& dials, const PoseSkin* before);
   Vec3 placeJoints(std::span<const Transform> motion, Scratch& scratch) const;

@@ -1,5 +1,7 @@
 #include <fascia/render/blended_skin.h>
 
+#include <fascia/rig/morph_blend.h>
+
 namespace fascia {
 
 BlendedSkin::BlendedSkin(const Character& character)
@@ -11,6 +13,7 @@ BlendedSkin::BlendedSkin(const Character& character)
 void BlendedSkin::compute(const CharacterState& state, std::vector<Eigen::Vector3f>& positions) {
   joints_.motion(state.skeleton, motion_);
   blend_.deform(motion_, points_);
+  addMorphs(model_, state.morphs.weights, motion_, 1, points_);
   positions.resize(model_.vertices.size());
   for (std::size_t v = 0; v < positions.size(); ++v)
     positions[v] = points_[model_.vertices[v].point];

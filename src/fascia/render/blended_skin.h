@@ -8,13 +8,13 @@
 
 namespace fascia {
 
-// An imported surface moved by its file's own weights: what there is to see of a rig without
-// elastic skin, and a quick measure of where one with it will go.
+// An imported surface moved by its file's own weights, and its morphs: what there is to see of a
+// rig without elastic skin, and a quick measure of where one with it will go.
 class BlendedSkin {
  public:
   explicit BlendedSkin(const Character& character);  // which has a rig; must outlive this
 
-  // Reads the state's posed skeleton. In the order of RiggedModel::vertices.
+  // Reads the state's posed skeleton and its morphs. In the order of RiggedModel::vertices.
   void compute(const CharacterState& state, std::vector<Eigen::Vector3f>& positions);
 
  private:

@@ -96,9 +96,11 @@ double ballRadius(const Skeleton& skeleton) {
 
 // Which of the skeleton's joints carry points of the rig's surface. Traces of weight do not count:
 // files have them where nobody meant them.
-std::vector<char> carriers(const Skeleton& skeleton, const RiggedModel& rig) {
+std::vector<char> carriers(const Skeleton& skeleton, const RiggedModel& rig,
+                           std::span<const std::string> rigNames) {
   std::unordered_set<std::string_view> names;
-  for (const std::uint32_t joint : dominantJoints(rig)) names.insert(rig.joints[joint].name);
+  for (const std::uint32_t joint : dominantJoints(rig))
+    names.insert(rigNames.empty() ? rig.joints[joint].name : rigNames[joint]);
   std::vector<char> out(skeleton.jointCount());
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = names.contains(skeleton.joint(JointId(static_cast<std::int64_t>(i))).name);
@@ -135,11 +137,12 @@ BoneSizes boneSizes(const Skeleton& skeleton) {
           std::vector<char>(count, 1)};
 }
 
-BoneSizes boneSizes(const Skeleton& skeleton, const RiggedModel& rig) {
+BoneSizes boneSizes(const Skeleton& skeleton, const RiggedModel& rig,
+                    std::span<const std::string> names) {
   const std::size_t count = skeleton.jointCount();
   const auto size_m = static_cast<float>(rig.size_m());
   BoneSizes sizes;
-  sizes.hasShaft = shafts(skeleton, carriers(skeleton, rig), kShortestBone * rig.size_m());
+  sizes.hasShaft = shafts(skeleton, carriers(skeleton, rig, names), kShortestBone * rig.size_m());
   std::vector<float> longest_m(count, 0.f);
   for (std::size_t i = 0; i < count; ++i) {
     if (!sizes.hasShaft[i]) continue;

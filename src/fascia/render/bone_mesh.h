@@ -19,7 +19,9 @@ BoneSizes boneSizes(const Skeleton& skeleton);
 
 // For imported rigs, which are full of joints that are no bones: roots on the floor, handles, twist
 // joints on top of others. Only chains that move the surface are drawn, thick as they are long.
-BoneSizes boneSizes(const Skeleton& skeleton, const RiggedModel& rig);
+// `names`: what the skeleton calls the rig's joints; empty: as the rig does.
+BoneSizes boneSizes(const Skeleton& skeleton, const RiggedModel& rig,
+                    std::span<const std::string> names = {});
 
 // Every bone of a posed skeleton in one mesh: a shaft with knobs from each parent to its child, and
 // a ball at each joint. Has the same triangles in every posture of the same skeleton, also where a

@@ -151,9 +151,10 @@ void addBones(const Character& character, const CharacterState& state, bool insi
               Scene& scene) {
   Drawable bones;
   const Skeleton& skeleton = character.skeleton();
-  bones.mesh = boneMesh(
-      skeleton, state.skeleton,
-      hasRig(character) ? boneSizes(skeleton, *character.def().rig->model) : boneSizes(skeleton));
+  bones.mesh = boneMesh(skeleton, state.skeleton,
+                        hasRig(character) ? boneSizes(skeleton, *character.def().rig->model,
+                                                      character.def().rig->jointNames())
+                                          : boneSizes(skeleton));
   bones.material.kind = Material::Kind::bone;
   bones.material.color = Rgb(0.93f, 0.89f, 0.79f);
   bones.material.roughness = 0.42f;

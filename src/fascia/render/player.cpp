@@ -24,6 +24,9 @@ class FramePosture final : public PostureSource {
     out.posture.values = frame_.posture;
     out.posture.rates.assign(out.posture.values.size(), 0.0);
     if (!frame_.parameters.empty()) out.parameters = frame_.parameters;
+    if (frame_.morphs.empty()) return;
+    out.morphs.weights = frame_.morphs;
+    std::ranges::fill(out.morphs.rates, 0.0);
   }
 
  private:

@@ -13,7 +13,7 @@ RigJoints::RigJoints(const Character& character) : model_(*character.def().rig->
   for (std::size_t j = 0; j < skeleton.jointCount(); ++j)
     byName.emplace(skeleton.joint(JointId(static_cast<std::int64_t>(j))).name, j);
   for (const RigJoint& joint : model_.joints) {
-    const auto found = byName.find(joint.name);
+    const auto found = byName.find(character.def().rig->nameOf(joint.name));
     const std::size_t inherited =
         joint.parent < 0 ? 0 : driver_[static_cast<std::size_t>(joint.parent)];
     driver_.push_back(found != byName.end() ? found->second : inherited);

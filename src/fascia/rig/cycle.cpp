@@ -77,12 +77,22 @@ bool closesWithAStep(const RiggedModel& model, const SampledMotion& motion,
   return true;
 }
 
+// Whether morphs end as they begin.
+bool sameWeights(const SampledMotion& motion) {
+  constexpr float kSameWeight = 0.01f;
+  const std::size_t count = motion.morphs.size(), last = motion.weights.size() - count;
+  for (std::size_t m = 0; m < count; ++m)
+    if (std::abs(motion.weights[m] - motion.weights[last + m]) > kSameWeight) return false;
+  return true;
+}
+
 }  // namespace
 
 std::optional<MotionCycle> cycleOf(const RiggedModel& model, int motion) {
   const SampledMotion& m = model.motions[static_cast<std::size_t>(motion)];
   if (m.loop) return MotionCycle{Vec3::Zero(), m.duration_s()};
   if (m.frameCount() < 3) return std::nullopt;
+  if (!sameWeights(m)) return std::nullopt;
   const std::vector<bool> has = jointsWithSkin(model);
   const auto root = std::find(has.begin(), has.end(), true);
   if (root == has.end()) return std::nullopt;
@@ -113,6 +123,7 @@ SampledMotion playedTwice(const RiggedModel& model, int motion, const MotionCycl
   out.loop = false;
   out.rotation.clear();
   out.translation_m.clear();
+  out.weights.clear();
   std::vector<Transform> world;
   for (std::size_t f = 0; f <= 2 * period; ++f) {
     // The end of a time is the beginning of the next; the very last frame may be the motion's own.
@@ -121,6 +132,8 @@ SampledMotion playedTwice(const RiggedModel& model, int motion, const MotionCycl
     const std::size_t round = own ? 1 : f / period;
     const auto times = static_cast<double>(round);
     poseRig(model, motion, static_cast<double>(source) / once.rate_hz, world);
+    for (std::size_t m = 0; m < once.morphs.size(); ++m)
+      out.weights.push_back(once.weights[source * once.morphs.size() + m]);
     for (std::size_t j = 0; j < joints; ++j) {
       const int parent = model.joints[j].parent;
       const auto p = static_cast<std::size_t>(std::max(parent, 0));

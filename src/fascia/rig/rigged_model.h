@@ -54,6 +54,15 @@ struct RigPart {
   std::uint32_t firstTriangle = 0, triangleCount = 0;
 };
 
+// A morph target (blend shape): moves points of the rest shape by its weight.
+struct RigMorph {
+  std::string name;            // unique, not empty
+  int node = -1, target = -1;  // of the source glTF: the node whose weight it is, and which one
+  float rest = 0;              // the weight that is in points_m
+  std::vector<std::uint32_t> points;            // that it moves, increasing
+  std::vector<Eigen::Vector3f> displacement_m;  // of these, for a weight of 1
+};
+
 struct RiggedModel {
   std::string name;
   std::string sourceFile;
@@ -65,6 +74,7 @@ struct RiggedModel {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // of points, counter-clockwise from outside
   std::vector<std::uint32_t> component;  // per point: number of its connected piece, from 0
   std::uint32_t componentCount = 0;
+  std::vector<RigMorph> morphs;  // of its points
 
   // The surface that is drawn and written, in the source's order.
   std::vector<RigVertex> vertices;

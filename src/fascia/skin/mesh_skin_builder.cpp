@@ -143,8 +143,8 @@ bool MeshSkinBuilder::checkDef() const {
 
 bool MeshSkinBuilder::findJoints() {
   bool ok = true;
-  for (const RigJoint& j : rig_.joints) {
-    const JointId id = report_.findJoint("", j.name);
+  for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
+    const JointId id = report_.findJoint("", nameOf(j));
     ok = ok && id.valid();
     if (id.valid()) joints_.push_back({id.index(), base_.posedSkeleton.joint_world[id.index()]});
   }
@@ -364,7 +364,8 @@ std::shared_ptr<const PoseSkin> MeshSkinBuilder::evaluator(
   dials.volume = listOf(SkinQuantity::volume);
   dials.tightness = listOf(SkinQuantity::tightness);
   const std::vector<TriangleMembrane::Corners> triangles = storedTriangles();
-  const PoseSource source{rest, weights, triangles, joints};
+  const std::vector<RigMorph> morphs = storedMorphs();
+  const PoseSource source{rest, weights, triangles, joints, morphs};
   if (!before_) return std::make_shared<PoseSkin>(source, dials);
   const PoseSkin& old = *before_->rigged->skin;
   const MeshRest& laid = *before_->meshRest;
@@ -380,6 +381,13 @@ std::vector<TriangleMembrane::Corners> MeshSkinBuilder::storedTriangles() const 
   for (const auto& t : rig_.triangles)
     triangles.push_back({rest_->storageOf[t[0]], rest_->storageOf[t[1]], rest_->storageOf[t[2]]});
   return triangles;
+}
+
+std::vector<RigMorph> MeshSkinBuilder::storedMorphs() const {
+  std::vector<RigMorph> morphs = rig_.morphs;
+  for (RigMorph& morph : morphs)
+    for (std::uint32_t& point : morph.points) point = rest_->storageOf[point];
+  return morphs;
 }
 
 // The fat's volume is measured between where the rest posture puts the skin and its anchors.

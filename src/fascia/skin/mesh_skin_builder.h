@@ -29,6 +29,9 @@ class MeshSkinBuilder {
   SkinParts build();
 
  private:
+  const std::string& nameOf(std::size_t joint) const {
+    return base_.rigJoints.empty() ? rig_.joints[joint].name : base_.rigJoints[joint];
+  }
   bool checkDef() const;
   bool findJoints();
   MeshRestKey restKey() const;
@@ -44,6 +47,7 @@ class MeshSkinBuilder {
   void fixLoosePieces();
   void layFat(const VectorArray& skin, const VectorArray& anchors);
   std::vector<TriangleMembrane::Corners> storedTriangles() const;
+  std::vector<RigMorph> storedMorphs() const;
   bool keepsTopology() const;
   std::shared_ptr<const MeshTopology> makeTopology() const;
   TriangleMembrane makeMembrane() const;

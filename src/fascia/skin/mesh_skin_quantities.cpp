@@ -114,7 +114,7 @@ void MeshSkinBuilder::setQuantities() {
   QuantityMask all;
   all.fill(true);
   std::vector<std::string> joints;
-  for (const RigJoint& joint : rig_.joints) joints.push_back(joint.name);
+  for (std::size_t j = 0; j < rig_.joints.size(); ++j) joints.push_back(nameOf(j));
   applySkinEdits(def_, base_, report_, points, {SkinKind::rig, joints}, shape_->rest, all, q);
 }
 

@@ -51,6 +51,8 @@ struct SkinBase {
   const PosedSkeleton& posedSkeleton;
   const PosedFlesh& posedFlesh;
   const RiggedModel* rig = nullptr;  // the skin is this mesh; nullptr: a grid around the flesh
+  // What the skeleton calls the rig's joints; empty: as the rig does.
+  std::span<const std::string> rigJoints{};
 };
 
 struct FaceSamples;

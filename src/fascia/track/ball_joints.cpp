@@ -34,10 +34,4 @@ JointRotation BallJoints::read(std::size_t i, const Posture& posture) const {
   return {joint, Quat(rotationZyx(angles)), angularVelocityZyx(angles, rates)};
 }
 
-void sampleFit(const PostureSource& source, const Skeleton& skeleton, const Flesh& flesh,
-               double time_s, PostureSample& out) {
-  source.sample(time_s, out);
-  admit(skeleton, flesh, {}, out);
-}
-
 }  // namespace fascia

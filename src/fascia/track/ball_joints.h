@@ -33,9 +33,4 @@ class BallJoints {
   std::vector<bool> ofBall_;  // per value
 };
 
-// What a source says, made fit for its figure: rotations are those of ball joints only, in their
-// order.
-void sampleFit(const PostureSource& source, const Skeleton& skeleton, const Flesh& flesh,
-               double time_s, PostureSample& out);
-
 }  // namespace fascia

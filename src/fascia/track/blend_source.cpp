@@ -48,13 +48,15 @@ Flesh::ParameterOverride mixed(const Flesh::ParameterOverride* lower,
 
 }  // namespace
 
-BlendSource::BlendSource(const Skeleton& skeleton, const Flesh& flesh)
-    : skeleton_(skeleton), flesh_(flesh), balls_(skeleton), rest_(skeleton.restPosture()) {}
+BlendSource::BlendSource(const Figure& figure)
+    : figure_(figure), balls_(figure.skeleton), rest_(figure.skeleton.restPosture()) {}
 
 std::size_t BlendSource::add(const PostureSource& source, const Fade& weight,
-                             std::vector<double> joint_share) {
-  assert(joint_share.empty() || joint_share.size() == skeleton_.jointCount());
-  layers_.push_back({&source, weight, std::move(joint_share)});
+                             std::vector<double> joint_share, std::vector<double> morph_share) {
+  assert(joint_share.empty() || joint_share.size() == figure_.skeleton.jointCount());
+  assert(morph_share.empty() || morph_share.size() == figure_.morphs.size());
+  if (morph_share.empty() && !joint_share.empty()) morph_share.assign(figure_.morphs.size(), 0.0);
+  layers_.push_back({&source, weight, std::move(joint_share), std::move(morph_share)});
   return layers_.size() - 1;
 }
 
@@ -68,14 +70,16 @@ void BlendSource::sample(double time_s, PostureSample& out) const {
   out.posture.rates = rest_.rates;
   out.posture.rotations.clear();
   out.parameters.clear();
+  figure_.morphs.rest(out.morphs);
   for (const Layer& layer : layers_) {
     const Share weight = layer.weight.at(time_s);
     if (weight.weight == 0 && weight.rate_per_s == 0) continue;
-    if (weight.weight == 1 && weight.rate_per_s == 0 && layer.share.empty()) {
-      sampleFit(*layer.source, skeleton_, flesh_, time_s, out);
+    if (weight.weight == 1 && weight.rate_per_s == 0 && layer.share.empty() &&
+        layer.morphShare.empty()) {
+      sampleFit(*layer.source, figure_, time_s, out);
       continue;
     }
-    sampleFit(*layer.source, skeleton_, flesh_, time_s, upper_);
+    sampleFit(*layer.source, figure_, time_s, upper_);
     mix(layer, weight, out);
   }
 }
@@ -84,6 +88,18 @@ void BlendSource::mix(const Layer& layer, const Share& weight, PostureSample& ou
   mixRotations(layer, weight, out.posture);
   mixValues(layer, weight, out.posture);
   mixParameters(layer, weight, out);
+  mixMorphs(layer, weight, upper_.morphs, out.morphs);
+}
+
+// Straight; a morph of which both layers say the same keeps its bits.
+void BlendSource::mixMorphs(const Layer& layer, const Share& weight, const MorphPose& upper,
+                            MorphPose& out) {
+  for (std::size_t i = 0; i < out.weights.size(); ++i) {
+    const Share w = times(weight, layer.morphShare.empty() ? 1 : layer.morphShare[i]);
+    const double way = upper.weights[i] - out.weights[i];
+    out.rates[i] += w.weight * (upper.rates[i] - out.rates[i]) + w.rate_per_s * way;
+    out.weights[i] += w.weight * way;
+  }
 }
 
 // Of all ball joints, and before their angles are mixed.
@@ -100,7 +116,7 @@ void BlendSource::mixRotations(const Layer& layer, const Share& weight, Posture&
 void BlendSource::mixValues(const Layer& layer, const Share& weight, Posture& out) const {
   for (std::size_t v = 0; v < out.values.size(); ++v) {
     if (balls_.contains(v)) continue;
-    const JointId joint = skeleton_.valueJoint(static_cast<int>(v));
+    const JointId joint = figure_.skeleton.valueJoint(static_cast<int>(v));
     const Share w = times(weight, layer.share.empty() ? 1 : layer.share[joint.index()]);
     const double way = upper_.posture.values[v] - out.values[v];
     out.rates[v] += w.weight * (upper_.posture.rates[v] - out.rates[v]) + w.rate_per_s * way;
@@ -110,7 +126,8 @@ void BlendSource::mixValues(const Layer& layer, const Share& weight, Posture& ou
 
 void BlendSource::mixParameters(const Layer& layer, const Share& weight, PostureSample& out) const {
   const auto shareOf = [&](const Flesh::ParameterOverride& o) {
-    return times(weight, layer.share.empty() ? 1 : layer.share[flesh_.joint(o.solid).index()]);
+    return times(weight,
+                 layer.share.empty() ? 1 : layer.share[figure_.flesh.joint(o.solid).index()]);
   };
   const auto same = [](const Flesh::ParameterOverride& a) {
     return [&a](const Flesh::ParameterOverride& b) {

@@ -52,11 +52,9 @@ struct PostureFrames::Place {
   }
 };
 
-PostureFrames::PostureFrames(const Skeleton& skeleton, const Flesh& flesh, std::size_t capacity,
-                             double coast_s)
-    : skeleton_(skeleton),
-      flesh_(flesh),
-      balls_(skeleton),
+PostureFrames::PostureFrames(const Figure& figure, std::size_t capacity, double coast_s)
+    : figure_(figure),
+      balls_(figure.skeleton),
       coast_s_(std::max(coast_s, 0.0)),
       ring_(std::max<std::size_t>(capacity, 4)) {}
 
@@ -80,7 +78,7 @@ void PostureFrames::put(double time_s, const PostureSample& sample) {
   Frame& room = makeRoom(time_s);
   room.time_s = time_s;
   room.sample = sample;
-  admit(skeleton_, flesh_, {}, room.sample);
+  admit(figure_, {}, room.sample);
   balls_.read(room.sample.posture, read_);
   room.turns.resize(balls_.size());
   for (std::size_t i = 0; i < read_.size(); ++i) room.turns[i] = read_[i].rotation.coeffs();
@@ -116,13 +114,14 @@ PostureFrames::Place PostureFrames::place(double time_s) const {
 
 void PostureFrames::sample(double time_s, PostureSample& out) const {
   Posture& posture = out.posture;
-  const std::size_t count = skeleton_.valueCount();
+  const std::size_t count = figure_.skeleton.valueCount();
   posture.values.resize(count), posture.rates.resize(count);
   posture.rotations.clear();
   out.parameters.clear();
+  figure_.morphs.rest(out.morphs);
   if (empty()) {
     for (std::size_t v = 0; v < count; ++v) {
-      posture.values[v] = skeleton_.valueDof(static_cast<int>(v)).rest;
+      posture.values[v] = figure_.skeleton.valueDof(static_cast<int>(v)).rest;
       posture.rates[v] = 0;
     }
     return;
@@ -134,6 +133,13 @@ void PostureFrames::sample(double time_s, PostureSample& out) const {
     const Moving<double> moving = at.along(p);
     posture.values[v] = moving.value, posture.rates[v] = moving.rate;
   }
+  sampleTurns(at, posture);
+  figure_.skeleton.clampToLimits(posture);
+  sampleMorphs(at, out.morphs);
+  sampleParameters(at, out);
+}
+
+void PostureFrames::sampleTurns(const Place& at, Posture& posture) const {
   posture.rotations.resize(balls_.size());
   for (std::size_t j = 0; j < balls_.size(); ++j) {
     std::array<Eigen::Vector4d, 4> q;
@@ -143,8 +149,16 @@ void PostureFrames::sample(double time_s, PostureSample& out) const {
     q[3] = inHemisphereOf(q[3], q[2]);
     posture.rotations[j] = unitOf(balls_.joint(j), at.along(q));
   }
-  skeleton_.clampToLimits(posture);
-  sampleParameters(at, out);
+}
+
+void PostureFrames::sampleMorphs(const Place& at, MorphPose& out) const {
+  for (std::size_t m = 0; m < out.weights.size(); ++m) {
+    std::array<double, 4> p;
+    for (std::size_t i = 0; i < 4; ++i) p[i] = frame(at.frames[i]).sample.morphs.weights[m];
+    const Moving<double> moving = at.along(p);
+    out.weights[m] = moving.value, out.rates[m] = moving.rate;
+  }
+  figure_.morphs.admit(out);
 }
 
 // Straight between two frames that animate the same; else as the earlier has them.

@@ -14,7 +14,7 @@ namespace fascia {
 class PostureFrames {
  public:
   // coast_s ≥ 0: how long it goes on.
-  PostureFrames(const Skeleton& skeleton, const Flesh& flesh, std::size_t capacity, double coast_s);
+  PostureFrames(const Figure& figure, std::size_t capacity, double coast_s);
 
   // In any order; one of a time that is there already replaces it, one older than all that are held
   // is dropped when there is no room. What is not finite is made fit. Allocates nothing once all
@@ -38,10 +38,11 @@ class PostureFrames {
   const Frame& frame(std::size_t i) const { return ring_[(first_ + i) % ring_.size()]; }
   Frame& frame(std::size_t i) { return ring_[(first_ + i) % ring_.size()]; }
   Frame& makeRoom(double time_s);
+  void sampleTurns(const Place& at, Posture& out) const;
+  void sampleMorphs(const Place& at, MorphPose& out) const;
   void sampleParameters(const Place& at, PostureSample& out) const;
 
-  const Skeleton& skeleton_;
-  const Flesh& flesh_;
+  Figure figure_;
   BallJoints balls_;
   double coast_s_;
   std::vector<Frame> ring_;

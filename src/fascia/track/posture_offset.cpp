@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fascia/base/assert.h>
 #include <fascia/math/rotation_vector.h>
 
 namespace fascia {
@@ -14,22 +15,31 @@ constexpr double kShortestReach_s = 1e-4;
 // A difference is forgotten when less than this is left: 1e-12 and less of it.
 constexpr double kForgotten = 32;
 
+void subtract(const std::vector<double>& a, const std::vector<double>& b,
+              std::vector<double>& difference) {
+  FASCIA_ASSERT(a.size() == b.size(), "both are of one figure");
+  difference.resize(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] - b[i];
+}
+
 }  // namespace
 
-PostureOffset::PostureOffset(const Skeleton& skeleton, double reach_s)
-    : skeleton_(skeleton),
-      balls_(skeleton),
+PostureOffset::PostureOffset(const Figure& figure, double reach_s)
+    : figure_(figure),
+      balls_(figure.skeleton),
       stiffness_per_s_(kReach / std::max(reach_s, kShortestReach_s)) {}
 
-void PostureOffset::start(double time_s, const Posture& actual, const Posture& goal) {
+void PostureOffset::start(double time_s, const PostureSample& actual, const PostureSample& goal) {
   active_ = true;
   start_s_ = time_s;
-  const std::size_t count = goal.values.size();
-  values_.resize(count), rates_.resize(count);
-  for (std::size_t v = 0; v < count; ++v) {
-    values_[v] = actual.values[v] - goal.values[v];
-    rates_[v] = actual.rates[v] - goal.rates[v];
-  }
+  subtract(actual.posture.values, goal.posture.values, values_);
+  subtract(actual.posture.rates, goal.posture.rates, rates_);
+  subtract(actual.morphs.weights, goal.morphs.weights, weights_);
+  subtract(actual.morphs.rates, goal.morphs.rates, weightRates_);
+  startTurns(actual.posture, goal.posture);
+}
+
+void PostureOffset::startTurns(const Posture& actual, const Posture& goal) {
   turns_.resize(balls_.size()), turnRates_.resize(balls_.size());
   balls_.read(goal, goal_);
   for (std::size_t i = 0; i < balls_.size(); ++i) {
@@ -48,15 +58,26 @@ PostureOffset::Left PostureOffset::left(double time_s) const {
   return {(1 + k * t) * e, t * e, -k * k * t * e, (1 - k * t) * e};
 }
 
-void PostureOffset::apply(double time_s, Posture& goal) const {
+void PostureOffset::apply(double time_s, PostureSample& goal) const {
   if (!active_ || stiffness_per_s_ * (time_s - start_s_) > kForgotten) return;
   const Left l = left(time_s);
-  balls_.read(goal, goal_);
-  for (std::size_t v = 0; v < goal.values.size(); ++v) {
+  Posture& posture = goal.posture;
+  balls_.read(posture, goal_);
+  for (std::size_t v = 0; v < posture.values.size(); ++v) {
     if (balls_.contains(v)) continue;
-    goal.values[v] += l.share * values_[v] + l.rateShare * rates_[v];
-    goal.rates[v] += l.shareRate * values_[v] + l.rateShareRate * rates_[v];
+    posture.values[v] += l.share * values_[v] + l.rateShare * rates_[v];
+    posture.rates[v] += l.shareRate * values_[v] + l.rateShareRate * rates_[v];
   }
+  applyTurns(l, posture);
+  figure_.skeleton.clampToLimits(posture);
+  for (std::size_t i = 0; i < goal.morphs.weights.size(); ++i) {
+    goal.morphs.weights[i] += l.share * weights_[i] + l.rateShare * weightRates_[i];
+    goal.morphs.rates[i] += l.shareRate * weights_[i] + l.rateShareRate * weightRates_[i];
+  }
+  figure_.morphs.admit(goal.morphs);
+}
+
+void PostureOffset::applyTurns(const Left& l, Posture& goal) const {
   goal.rotations.resize(balls_.size());
   for (std::size_t i = 0; i < balls_.size(); ++i) {
     const Vec3 phi = l.share * turns_[i] + l.rateShare * turnRates_[i];
@@ -65,7 +86,6 @@ void PostureOffset::apply(double time_s, Posture& goal) const {
     goal.rotations[i] = {goal_[i].joint, (step * goal_[i].rotation).normalized(),
                          angularVelocityOf(phi, phiRate) + step * goal_[i].angular_rad_per_s};
   }
-  skeleton_.clampToLimits(goal);
 }
 
 }  // namespace fascia

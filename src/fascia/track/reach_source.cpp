@@ -26,15 +26,11 @@ bool isFinite(const ReachGoal& goal) {
 
 }  // namespace
 
-ReachSource::ReachSource(const Skeleton& skeleton, const Flesh& flesh, const PostureSource& base)
-    : skeleton_(skeleton),
-      flesh_(flesh),
-      base_(base),
-      balls_(skeleton),
-      solved_(balls_.size(), false) {}
+ReachSource::ReachSource(const Figure& figure, const PostureSource& base)
+    : figure_(figure), base_(base), balls_(figure.skeleton), solved_(balls_.size(), false) {}
 
 std::size_t ReachSource::add(const ReachChainDef& def, Goal goal) {
-  Entry entry{ReachChain(skeleton_, def), std::move(goal)};
+  Entry entry{ReachChain(figure_.skeleton, def), std::move(goal)};
   if (!entry.chain.valid())
     throw Error("a chain needs joints that turn, from its root down to its end");
   for (std::size_t i = 0; i < balls_.size(); ++i)
@@ -44,11 +40,11 @@ std::size_t ReachSource::add(const ReachChainDef& def, Goal goal) {
 }
 
 void ReachSource::solve(double time_s, PostureSample& out) const {
-  sampleFit(base_, skeleton_, flesh_, time_s, out);
+  sampleFit(base_, figure_, time_s, out);
   for (const Entry& entry : entries_) {
     const ReachGoal goal = entry.goal(time_s);
     if (!isFinite(goal)) continue;
-    skeleton_.pose(out.posture, posed_);
+    figure_.skeleton.pose(out.posture, posed_);
     std::erase_if(out.posture.rotations,
                   [&](const JointRotation& turn) { return entry.chain.contains(turn.joint); });
     entry.chain.solve(goal, posed_, out.posture);
@@ -57,7 +53,7 @@ void ReachSource::solve(double time_s, PostureSample& out) const {
 
 double ReachSource::distance_m(std::size_t chain, double time_s) const {
   solve(time_s, after_);
-  skeleton_.pose(after_.posture, posed_);
+  figure_.skeleton.pose(after_.posture, posed_);
   const Entry& entry = entries_[chain];
   return (entry.chain.pointIn(posed_) - entry.goal(time_s).position_m).norm();
 }

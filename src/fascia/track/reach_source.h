@@ -13,8 +13,8 @@ namespace fascia {
 // What is out of reach is reached for.
 class ReachSource final : public PostureSource {
  public:
-  // All must outlive it.
-  ReachSource(const Skeleton& skeleton, const Flesh& flesh, const PostureSource& base);
+  // The base must outlive it.
+  ReachSource(const Figure& figure, const PostureSource& base);
 
   // The goal is asked for at any time of a frame, like the source; it must not throw or allocate.
   // Chains that share joints: one added later is solved on top of those before it.
@@ -35,8 +35,7 @@ class ReachSource final : public PostureSource {
   // The posture at a moment, with values that the chains have set; posed_ is its skeleton.
   void solve(double time_s, PostureSample& out) const;
 
-  const Skeleton& skeleton_;
-  const Flesh& flesh_;
+  Figure figure_;
   const PostureSource& base_;
   BallJoints balls_;
   std::vector<bool> solved_;  // per ball joint: part of a chain

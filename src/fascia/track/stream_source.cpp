@@ -5,13 +5,11 @@
 
 namespace fascia {
 
-StreamSource::StreamSource(const Skeleton& skeleton, const Flesh& flesh,
-                           const StreamOptions& options)
-    : skeleton_(skeleton),
-      flesh_(flesh),
+StreamSource::StreamSource(const Figure& figure, const StreamOptions& options)
+    : figure_(figure),
       delay_s_(options.delay_s),
-      frames_(skeleton, flesh, options.capacity, options.coast_s),
-      offset_(skeleton, options.catch_up_s),
+      frames_(figure, options.capacity, options.coast_s),
+      offset_(figure, options.catch_up_s),
       waiting_(std::max<std::size_t>(options.capacity, 4)),
       taken_(waiting_.size()) {}
 
@@ -37,17 +35,14 @@ std::size_t StreamSource::receive(double now_s) {
   }
   if (count == 0) return 0;
   const bool started = !frames_.empty();
-  if (started) {
-    sample(now_s, before_);
-    admit(skeleton_, flesh_, {}, before_);
-  }
+  if (started) sampleFit(*this, figure_, now_s, before_);
   for (std::size_t i = 0; i < count; ++i) {
     const Arrival& arrival = taken_[(first + i) % taken_.size()];
     frames_.put(arrival.time_s, arrival.sample);
   }
   if (!started) return count;
   sampleRaw(now_s, after_);
-  offset_.start(now_s, before_.posture, after_.posture);
+  offset_.start(now_s, before_, after_);
   return count;
 }
 
@@ -57,7 +52,7 @@ void StreamSource::sampleRaw(double time_s, PostureSample& out) const {
 
 void StreamSource::sample(double time_s, PostureSample& out) const {
   sampleRaw(time_s, out);
-  offset_.apply(time_s, out.posture);
+  offset_.apply(time_s, out);
 }
 
 }  // namespace fascia

@@ -20,8 +20,7 @@ struct StreamOptions {
 // between frames, so that a frame sees one motion.
 class StreamSource final : public PostureSource {
  public:
-  // Skeleton and flesh must outlive it.
-  StreamSource(const Skeleton& skeleton, const Flesh& flesh, const StreamOptions& options = {});
+  explicit StreamSource(const Figure& figure, const StreamOptions& options = {});
 
   // From any thread. A stamp is a time of the character's; postures may come late or in any order.
   // Where more wait than there is room, the oldest are lost. Rates are not read.
@@ -40,8 +39,7 @@ class StreamSource final : public PostureSource {
   };
   void sampleRaw(double time_s, PostureSample& out) const;
 
-  const Skeleton& skeleton_;
-  const Flesh& flesh_;
+  Figure figure_;
   double delay_s_;
   PostureFrames frames_;
   PostureOffset offset_;

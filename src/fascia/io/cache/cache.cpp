@@ -13,12 +13,13 @@ namespace fascia {
 namespace {
 
 // Layout, little-endian: magic, u32 version; texts (u64 length, bytes): character file, texture,
-// motion; the rig if the character has one (version 2 and later); how many numbers the soft solids'
-// shapes are (version 3 and later); rate, loop; the mesh; per frame time, posture, shapes,
-// positions as float32; stats (version 4: with the depth of faces), without how long anything took,
-// so that equal runs give equal files: zeros stand there, for programs that expect a number.
+// motion; the rig if the character has one (version 2 and later), and its morphs (version 5, of
+// characters with morphs only); how many numbers the soft solids' shapes are (version 3 and later);
+// rate, loop; the mesh; per frame time, posture, shapes, weights of morphs, positions as float32;
+// stats (version 4: with the depth of faces), without how long anything took, so that equal runs
+// give equal files: zeros stand there, for programs that expect a number.
 constexpr std::string_view kCacheMagic("FCACHE\x1a\n", 8);
-constexpr std::uint32_t kPlainVersion = 1, kSoftVersion = 3, kFaceVersion = 4;
+constexpr std::uint32_t kPlainVersion = 1, kSoftVersion = 3, kFaceVersion = 4, kMorphVersion = 5;
 constexpr std::size_t kMaxCacheBytes = std::size_t{8} << 30;
 
 template <class Vector>
@@ -84,16 +85,25 @@ std::size_t shapeSize(const Recording& recording) {
   return recording.frames.empty() ? 0 : recording.frames.front().soft_shapes.size();
 }
 
-Recording::Frame readFrame(ByteReader& in, std::size_t postureSize, std::size_t shapes,
-                           std::size_t vertices) {
+std::size_t morphCount(const CharacterDef& def) {
+  return def.rig && def.rig->model ? def.rig->model->morphs.size() : 0;
+}
+
+// How many numbers a frame has of each kind.
+struct FrameSize {
+  std::size_t posture, shapes, morphs, vertices;
+};
+
+Recording::Frame readFrame(ByteReader& in, const FrameSize& size) {
   Recording::Frame frame;
   frame.time_s = in.value<double>();
   checkFinite(in, frame.time_s);
-  in.array(frame.posture, postureSize);
-  in.array(frame.soft_shapes, shapes);
-  for (const auto* values : {&frame.posture, &frame.soft_shapes})
+  in.array(frame.posture, size.posture);
+  in.array(frame.soft_shapes, size.shapes);
+  in.array(frame.morphs, size.morphs);
+  for (const auto* values : {&frame.posture, &frame.soft_shapes, &frame.morphs})
     for (const double value : *values) checkFinite(in, value);
-  if (in.value<std::uint8_t>() != 0) in.array(frame.skin_m, vertices);
+  if (in.value<std::uint8_t>() != 0) in.array(frame.skin_m, size.vertices);
   checkFinite(in, frame.skin_m);
   return frame;
 }
@@ -109,16 +119,18 @@ namespace {
 // Everything in its order, piece by piece.
 void putCache(const CharacterDef& def, const Recording& recording, const Texture* texture,
               const std::function<void(std::string_view)>& put) {
-  const std::size_t postureSize = valueCount(def);
+  const std::size_t postureSize = valueCount(def), morphs = morphCount(def);
   if (def.rig && !def.rig->model) throw Error("the character's rig was not read from its file");
   ByteWriter head;
   head.bytes = kCacheMagic;
   const std::size_t shapes = shapeSize(recording);
-  head.value(kFaceVersion);
+  head.value(morphs > 0 ? kMorphVersion : kFaceVersion);
   head.text(characterText(def));
   head.text(texture ? texture->bytes : loadTexture(def).bytes);
   head.text(recording.motion);
   if (def.rig) writeRig(*def.rig->model, motionNamed(*def.rig->model, recording.motion), head);
+  if (morphs > 0)
+    writeRigMorphs(*def.rig->model, motionNamed(*def.rig->model, recording.motion), head);
   head.value(static_cast<std::uint64_t>(shapes));
   head.value(recording.frame_rate_hz);
   head.value(static_cast<std::uint8_t>(recording.loop));
@@ -128,6 +140,7 @@ void putCache(const CharacterDef& def, const Recording& recording, const Texture
   for (const Recording::Frame& frame : recording.frames) {
     const bool skin = !frame.skin_m.empty();
     if (frame.posture.size() != postureSize || frame.soft_shapes.size() != shapes ||
+        frame.morphs.size() != morphs ||
         (skin && frame.skin_m.size() != recording.skin.positions.size())) {
       throw Error("the recording is not of this character");
     }
@@ -135,6 +148,7 @@ void putCache(const CharacterDef& def, const Recording& recording, const Texture
     out.value(frame.time_s);
     out.array(frame.posture.data(), frame.posture.size());
     out.array(frame.soft_shapes.data(), frame.soft_shapes.size());
+    out.array(frame.morphs.data(), frame.morphs.size());
     out.value(static_cast<std::uint8_t>(skin));
     out.array(frame.skin_m.data(), frame.skin_m.size());
     put(out.bytes);
@@ -170,9 +184,9 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   if (!isCache(bytes)) in.fail("is not a Fascia cache");
   in.take(kCacheMagic.size());
   const auto version = in.value<std::uint32_t>();
-  if (version < kPlainVersion || version > kFaceVersion) {
+  if (version < kPlainVersion || version > kMorphVersion) {
     in.fail("has cache format " + std::to_string(version) + ", this program reads up to format " +
-            std::to_string(kFaceVersion));
+            std::to_string(kMorphVersion));
   }
   Cache cache;
   cache.def = readCharacterText(in.text(), file).def;
@@ -182,7 +196,11 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
   }
   Recording& recording = cache.recording;
   recording.motion = in.text();
-  if (cache.def.rig) cache.def.rig->model = std::make_shared<const RiggedModel>(readRig(in));
+  if (cache.def.rig) {
+    RiggedModel model = readRig(in);
+    if (version >= kMorphVersion) readRigMorphs(in, model);
+    cache.def.rig->model = std::make_shared<const RiggedModel>(std::move(model));
+  }
   const auto shapes =
       version >= kSoftVersion ? static_cast<std::size_t>(in.value<std::uint64_t>()) : 0;
   recording.frame_rate_hz = in.value<double>();
@@ -196,9 +214,10 @@ Cache parseCache(std::string_view bytes, const std::string& file) {
     in.fail("has a mesh that is not its rig's");
   }
   const auto frames = in.value<std::uint64_t>();
-  const std::size_t postureSize = valueCount(cache.def);
+  const FrameSize size{valueCount(cache.def), shapes, morphCount(cache.def),
+                       recording.skin.positions.size()};
   for (std::uint64_t f = 0; f < frames; ++f) {
-    recording.frames.push_back(readFrame(in, postureSize, shapes, recording.skin.positions.size()));
+    recording.frames.push_back(readFrame(in, size));
   }
   eachSkinStat(recording.stats, version,
                [&](auto& value) { value = in.value<std::decay_t<decltype(value)>>(); });

@@ -34,12 +34,23 @@ CodecPtr<SkeletonDef> skeletonCodec() {
                                                                 listOf(jointCodec(), kMostJoints));
 }
 
+CodecPtr<RigJointNameDef> jointNameCodec() {
+  using N = RigJointNameDef;
+  using Object = ObjectCodec<N>;
+  auto codec = std::make_shared<Object>("A joint that is called otherwise here.");
+  codec->field("joint", &N::joint, names(), "Its name in the rig's file", Object::Need::required)
+      .field("name", &N::name, names(), "Its name in the skeleton", Object::Need::required);
+  return codec;
+}
+
 CodecPtr<RigDef> rigCodec() {
   using Object = ObjectCodec<RigDef>;
   auto codec = std::make_shared<Object>("A skinned mesh from a file: the skin instead of a grid.");
   codec->field("file", &RigDef::file, names(),
                "glTF or GLB in the folder of this file, or below it", Object::Need::required);
   addTunables<RigDef>(*codec);
+  codec->field("joint_names", &RigDef::joint_names, listOf(jointNameCodec(), kMostJoints),
+               "Joints that the skeleton calls otherwise than the rig's file");
   return codec;
 }
 

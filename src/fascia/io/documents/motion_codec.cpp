@@ -15,7 +15,7 @@ class ChannelUnit {
     if (track.target == TrackDef::Target::joint) {
       dof_ = dofFromName(track.channel).value_or(Dof::rx);
       suffix_ = '_' + dofUnit(*dof_);
-    } else {
+    } else {  // a morph's weight has neither a unit nor a parameter
       parameter_ = track.channel;
       suffix_ = isAngleName(parameter_) ? "_deg" : parameter_.ends_with("_m") ? "_m" : "";
     }
@@ -116,16 +116,37 @@ Json keySchema() {
   return out;
 }
 
-// {"joint": "hips", "dof": "rx", "keys": …} or {"solid": "belly", "parameter": "radius_m", …}.
+// What a track animates, and which number of it: as its file names them.
+struct TrackKind {
+  TrackDef::Target target;
+  const char* what;
+  const char* channel;  // nullptr: there is only one
+};
+constexpr TrackKind kTrackKinds[] = {{TrackDef::Target::joint, "joint", "dof"},
+                                     {TrackDef::Target::solid, "solid", "parameter"},
+                                     {TrackDef::Target::morph, "morph", nullptr}};
+
+const TrackKind& kindOf(const TrackDef& track) {
+  return *std::ranges::find(kTrackKinds, track.target, &TrackKind::target);
+}
+// Of a track that names nothing: a joint's.
+const TrackKind& kindIn(const Json& json) {
+  const auto named = [&](const TrackKind& kind) { return json.find(kind.what) != nullptr; };
+  const auto found = std::find_if(std::begin(kTrackKinds) + 1, std::end(kTrackKinds), named);
+  return found == std::end(kTrackKinds) ? kTrackKinds[0] : *found;
+}
+
+// {"joint": "hips", "dof": "rx", "keys": …}, {"solid": "belly", "parameter": "radius_m", …} or
+// {"morph": "smile", …}.
 class TrackCodec final : public Codec<TrackDef> {
  public:
   void read(const Json& json, const JsonPath& path, Reading& reading,
             TrackDef& track) const override {
     if (!reading.expect(json, Json::Kind::object, path)) return;
-    const bool solid = json.find("solid") != nullptr;
-    track.target = solid ? TrackDef::Target::solid : TrackDef::Target::joint;
-    const std::string_view known[] = {solid ? "solid" : "joint", solid ? "parameter" : "dof",
-                                      "keys"};
+    const TrackKind& kind = kindIn(json);
+    track.target = kind.target;
+    std::vector<std::string_view> known{kind.what, "keys"};
+    if (kind.channel) known.insert(known.begin() + 1, kind.channel);
     for (const Json::Member& member : json.object()) {
       if (std::find(std::begin(known), std::end(known), member.key) != std::end(known)) continue;
       NearestName nearest(member.key);
@@ -139,17 +160,21 @@ class TrackCodec final : public Codec<TrackDef> {
     if (const Json* name = json.find(known[0])) {
       names()->read(*name, path[known[0]], reading, track.name);
     }
-    const Json* channel = json.find(known[1]);
+    if (kind.channel) {
+      const Json* channel = json.find(kind.channel);
+      if (!channel || !readChannel(*channel, path[kind.channel], reading, track)) return;
+    }
     const Json* keys = json.find("keys");
-    if (!channel || !readChannel(*channel, path[known[1]], reading, track) || !keys) return;
+    if (!keys) return;
     readKeys(*keys, path["keys"], reading, track);
   }
 
   Json write(const TrackDef& track) const override {
     const bool joint = track.target == TrackDef::Target::joint;
+    const TrackKind& kind = kindOf(track);
     Json out;
-    out.set(joint ? "joint" : "solid", track.name);
-    out.set(joint ? "dof" : "parameter", joint ? track.channel : fileName(track.channel));
+    out.set(kind.what, track.name);
+    if (kind.channel) out.set(kind.channel, joint ? track.channel : fileName(track.channel));
     const ChannelUnit unit(track);
     Json::List keys;
     for (const Key& key : track.keys) keys.push_back(keyJson(key, unit));
@@ -163,7 +188,12 @@ class TrackCodec final : public Codec<TrackDef> {
              "Kochanek-Bartels keys by increasing time; degrees for rotations, else metres or the "
              "parameter's own unit");
     keys.set("items", keySchema());
-    return oneOfTwo(keys);
+    Json out;
+    out.set("description", "One animated number: of a joint, of a solid, or a morph's weight");
+    out.set("anyOf", Json::List{variant("joint", "dof", dofCodec()->schema(), keys),
+                                variant("solid", "parameter", names()->schema(), keys),
+                                variant("morph", nullptr, {}, keys)});
+    return out;
   }
 
   bool same(const TrackDef&, const TrackDef&) const override { return false; }
@@ -200,20 +230,17 @@ class TrackCodec final : public Codec<TrackDef> {
   static Json variant(const char* what, const char* channel, Json channelSchema, const Json& keys) {
     Json properties;
     properties.set(what, names()->schema());
-    properties.set(channel, std::move(channelSchema));
+    Json::List required{what};
+    if (channel) {
+      properties.set(channel, std::move(channelSchema));
+      required.emplace_back(channel);
+    }
     properties.set("keys", keys);
+    required.emplace_back("keys");
     Json out = typed("object");
     out.set("properties", std::move(properties));
-    out.set("required", Json::List{what, channel, "keys"});
+    out.set("required", std::move(required));
     out.set("additionalProperties", false);
-    return out;
-  }
-
-  static Json oneOfTwo(const Json& keys) {
-    Json out;
-    out.set("description", "One animated number: of a joint, or of a solid");
-    out.set("anyOf", Json::List{variant("joint", "dof", dofCodec()->schema(), keys),
-                                variant("solid", "parameter", names()->schema(), keys)});
     return out;
   }
 };

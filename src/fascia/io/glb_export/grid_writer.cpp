@@ -70,7 +70,7 @@ class GridWriter {
     part.node = skinNode_, part.primitive = 0;
     std::vector<BakeError> out;
     for (std::size_t r = 0; r < recordings_.size(); ++r) {
-      const RigPlayer player(document, {&part, 1}, animationOf_[r], 1, basis_.targets.size());
+      const RigPlayer player(document, {&part, 1}, animationOf_[r], 1);
       out.push_back(playedError(player, 0, recordings_[r]->frames));
     }
     return out;

@@ -18,6 +18,7 @@ constexpr double kSameMotion = 2e-3;
 // The same for the file's keys as they play, and how far a joint may be turned (sine, about): more
 // would be the larger part of a bake's error.
 constexpr double kPlayedShift = 3e-4, kPlayedTurn = 2e-3;
+constexpr double kSameWeight = 1e-3;  // of a morph
 
 std::vector<float> frameTimes(const RigClip& clip, float start_s) {
   std::vector<float> times;
@@ -95,7 +96,7 @@ class JointKeys {
 // Whether the file's own keys, played as players do, show the recorded joints: between keys that
 // lie far apart in a fast motion, straight lines leave the smooth way that was simulated.
 bool playsAsRecorded(const RigSource& source, const RigClip& clip, int animation, double start_s) {
-  const RigPlayer player(source.document, {}, animation, source.scale, 0);
+  const RigPlayer player(source.document, {}, animation, source.scale);
   const double least_m = kPlayedShift * clip.model.size_m();
   const BoneFrames motion = boneFrames(clip);
   JointKeys recorded(source);
@@ -163,6 +164,24 @@ void eraseJointChannels(const RigSource& source, Json& animation) {
                 [&](const Json& channel) { return movesJoint(source, channel); });
 }
 
+// Whether the file's own keys, or its weights at rest, show the recorded ones of a part.
+bool playsWeights(const RigPlayer& player, std::size_t part, const RigClip& clip,
+                  const BakedAnimation& animation) {
+  const std::vector<RigMorph>& morphs = clip.model.morphs;
+  const auto& frames = clip.recording.frames;
+  for (const Recording::Frame& frame : frames) {
+    const std::vector<double> played =
+        player.morphWeights(part, animation.start_s + frame.time_s - frames.front().time_s);
+    for (std::size_t m = 0; m < morphs.size(); ++m) {
+      if (morphs[m].node != clip.model.parts[part].node) continue;
+      const std::size_t target = at(morphs[m].target);
+      if (target >= played.size() || std::abs(played[target] - frame.morphs[m]) > kSameWeight)
+        return false;
+    }
+  }
+  return true;
+}
+
 // What a recording shows of a motion of the file that begins at `start_s` on its clock.
 GltfSpan spanOf(const RigClip& clip, double start_s) {
   const auto& frames = clip.recording.frames;
@@ -222,6 +241,33 @@ void addChannel(RigSource& source, const BakedAnimation& animation, int node, co
   const int output = source.document.addFloats(values, type);
   addGltfTrack(source.document.item("animations", animation.index), animation.times, output, node,
                path);
+}
+
+void addWeightChannel(RigSource& source, const RigClip& clip, const BakedAnimation& animation,
+                      int node,
+                      const std::function<void(std::size_t frame, std::vector<float>&)>& append) {
+  std::erase_if(ensureList(source.document.item("animations", animation.index), "channels").list(),
+                [&](const Json& channel) { return weighsMorphs(channel, node); });
+  const std::vector<RigMorph>& morphs = clip.model.morphs;
+  std::vector<float> values;
+  for (std::size_t f = 0; f < clip.recording.frames.size(); ++f) {
+    for (std::size_t m = 0; m < morphs.size(); ++m)
+      if (morphs[m].node == node)
+        values.push_back(static_cast<float>(clip.recording.frames[f].morphs[m]));
+    if (append) append(f, values);
+  }
+  addChannel(source, animation, node, "weights", values, "SCALAR");
+}
+
+void addWeightChannels(RigSource& source, const RigClip& clip, const BakedAnimation& animation) {
+  if (clip.model.morphs.empty()) return;
+  const RigPlayer player(source.document, clip.model.parts, animation.index, source.scale);
+  std::set<int> done;
+  for (std::size_t p = 0; p < clip.model.parts.size(); ++p) {
+    const int node = clip.model.parts[p].node;
+    if (!done.insert(node).second || playsWeights(player, p, clip, animation)) continue;
+    addWeightChannel(source, clip, animation, node);
+  }
 }
 
 void addRigidChannels(RigSource& source, const BakedAnimation& animation, int node,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -25,6 +26,14 @@ BakedAnimation prepareAnimation(RigSource& source, const RigClip& clip);
 // Linear keys at the recording's frames. type: "VEC3"; path: "translation", "rotation", "weights".
 void addChannel(RigSource& source, const BakedAnimation& animation, int node, const char* path,
                 std::span<const float> values, std::string_view type);
+
+// The recorded weights of a node's own morph targets, in their order, frame by frame. `append`
+// adds those of targets that a frame has beside them. Replaces what the animation did with them.
+void addWeightChannel(
+    RigSource& source, const RigClip& clip, const BakedAnimation& animation, int node,
+    const std::function<void(std::size_t frame, std::vector<float>&)>& append = {});
+// Those of all nodes whose targets the animation does not show as recorded already.
+void addWeightChannels(RigSource& source, const RigClip& clip, const BakedAnimation& animation);
 
 // Rotation and translation keys; neighbouring rotations turn the short way.
 void addRigidChannels(RigSource& source, const BakedAnimation& animation, int node,

@@ -60,6 +60,7 @@ class BoneWriter {
     std::vector<PlayedClip> played;
     for (const RigClip& clip : source_.clips) {
       animations.push_back(prepareAnimation(source_, clip));
+      addWeightChannels(source_, clip, animations.back());
       leftOut_ += animations.back().leftOut;
       played.push_back({clip, animations.back().index, animations.back().start_s});
     }
@@ -103,19 +104,20 @@ class BoneWriter {
 
   // Whether all of a part's vertices follow one joint of the rig, as a node below it does.
   bool staysRigid(const RigPart& part) const {
-    return std::all_of(source_.clips.begin(), source_.clips.end(),
-                       [&](const RigClip& clip) { return staysRigid(part, clip); });
+    for (std::size_t c = 0; c < source_.clips.size(); ++c)
+      if (!staysRigid(part, source_.clips[c], pointFrames_[c])) return false;
+    return true;
   }
-  bool staysRigid(const RigPart& part, const RigClip& clip) const {
+  bool staysRigid(const RigPart& part, const RigClip& clip, const PointFrames& frames) const {
     const int carrier = std::max(source_.rig.carrierOfNode[at(part.node)], 0);
-    const auto& frames = clip.recording.frames;
     const double least = kRigid * model_.size_m();
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const Transform motion =
           clip.joints_world[f][at(carrier)] * model_.joints[at(carrier)].rest_world.inverse();
       for (std::uint32_t v = part.firstVertex; v < part.firstVertex + part.vertexCount; ++v) {
-        const Vec3 rest = model_.points_m[model_.vertices[v].point].cast<double>();
-        if ((motion.point(rest) - frames[f].skin_m[v].cast<double>()).norm() > least) return false;
+        const std::uint32_t point = model_.vertices[v].point;
+        const Vec3 rest = model_.points_m[point].cast<double>();
+        if ((motion.point(rest) - frames[f][point].cast<double>()).norm() > least) return false;
       }
     }
     return true;
@@ -123,6 +125,7 @@ class BoneWriter {
 
   // Meshes that hung on a joint, but are soft now, get the first skin.
   void skinLooseParts() {
+    for (const RigClip& clip : source_.clips) pointFrames_.push_back(pointFrames(clip));
     const auto first = std::find_if(source_.rig.skins.begin(), source_.rig.skins.end(),
                                     [](const GltfSkin& skin) { return skin.used; });
     const auto skin = static_cast<int>(first - source_.rig.skins.begin());
@@ -323,10 +326,11 @@ class BoneWriter {
   RigSource& source_;
   const RiggedModel& model_;
   const SkinningDecomposition& found_;
-  std::vector<Bone> bones_;        // the rig's joints, then helpers
-  std::vector<HelperNode> nodes_;  // of the helpers
-  bool onParents_ = true;          // every helper hangs below its own joint
-  std::set<int> soft_;             // nodes that got a skin
+  std::vector<Bone> bones_;               // the rig's joints, then helpers
+  std::vector<HelperNode> nodes_;         // of the helpers
+  std::vector<PointFrames> pointFrames_;  // per clip
+  bool onParents_ = true;                 // every helper hangs below its own joint
+  std::set<int> soft_;                    // nodes that got a skin
   std::set<std::string> names_;
   int lastName_ = 0;
   std::size_t leftOut_ = 0;  // channels
@@ -380,8 +384,8 @@ RigBakeReport writeRigAsBones(std::span<const RigClip> clips, const Decompositio
   report.notes = notesOfMotions(clips, writer.leftOut());
   report.notes.insert(report.notes.end(), springs.begin(), springs.end());
   report.files = {path};
-  measurePlayed(path, source.scale, played, 0, report);
-  report.others = measureOthers(source, path, others, 0);
+  measurePlayed(path, source.scale, played, report);
+  report.others = measureOthers(source, path, others);
   return report;
 }
 

@@ -50,10 +50,6 @@ class MorphWriter {
       animations.push_back(prepareAnimation(source_, clip));
       leftOut_ += animations.back().leftOut;
     }
-    std::vector<RigPlayer> before;  // the file's own targets keep what animations did with them
-    before.reserve(animations.size());
-    for (const BakedAnimation& animation : animations)
-      before.emplace_back(source_.document, model_.parts, animation.index, source_.scale, 0);
     // A mesh's weights are its node's: told by its first part.
     std::map<int, std::size_t> firstPart;
     for (std::size_t p = 0; p < model_.parts.size(); ++p) {
@@ -73,12 +69,17 @@ class MorphWriter {
       widenAnimations(node, oldTargets[node]);
       std::size_t first = 0;
       for (std::size_t c = 0; c < animations.size(); ++c) {
-        addWeightChannel(source_.clips[c], animations[c], node, OldWeights{before[c], part, first});
+        addWeightChannel(source_, source_.clips[c], animations[c], node,
+                         [&](std::size_t frame, std::vector<float>& values) {
+                           const std::vector<float>& fresh = basis_.weights[first + frame];
+                           values.insert(values.end(), fresh.begin(), fresh.end());
+                         });
         first += source_.clips[c].recording.frames.size();
       }
     }
     std::vector<PlayedClip> played;
     for (std::size_t c = 0; c < animations.size(); ++c) {
+      if (basis_.targets.empty()) addWeightChannels(source_, source_.clips[c], animations[c]);
       played.push_back({source_.clips[c], animations[c].index, animations[c].start_s});
     }
     return played;
@@ -184,15 +185,8 @@ class MorphWriter {
     const auto count = static_cast<int>(source_.document.root()["animations"].size());
     for (int a = 0; a < count; ++a) {
       Json::List& channels = ensureList(source_.document.item("animations", a), "channels").list();
-      const auto isOurs = [&](const Json& channel) {
-        const Json* target = channel.find("target");
-        const Json* path = target ? target->find("path") : nullptr;
-        const Json* index = target ? target->find("node") : nullptr;
-        return path && path->is(Json::Kind::text) && path->text() == "weights" && index &&
-               static_cast<int>(index->number()) == node;
-      };
       std::erase_if(channels, [&](Json& channel) {
-        return isOurs(channel) && !widenChannel(a, channel, old);
+        return weighsMorphs(channel, node) && !widenChannel(a, channel, old);
       });
     }
   }
@@ -215,34 +209,6 @@ class MorphWriter {
     samplers.push_back(std::move(sampler));
     putMember(channel, "sampler", static_cast<int>(samplers.size()) - 1);
     return true;
-  }
-
-  // What a part's targets did in a motion, and where its frames begin in the basis' weights.
-  struct OldWeights {
-    const RigPlayer& player;
-    std::size_t part, firstFrame;
-  };
-
-  void addWeightChannel(const RigClip& clip, const BakedAnimation& animation, int node,
-                        const OldWeights& old) {
-    Json::List& channels =
-        ensureList(source_.document.item("animations", animation.index), "channels").list();
-    std::erase_if(channels, [&](const Json& channel) {
-      const Json* target = channel.find("target");
-      return target && target->find("path")->text() == "weights" && target->find("node") &&
-             static_cast<int>(target->find("node")->number()) == node;
-    });
-    std::vector<float> values;
-    const auto& frames = clip.recording.frames;
-    for (std::size_t f = 0; f < frames.size(); ++f) {
-      const double time = animation.start_s + frames[f].time_s - frames.front().time_s;
-      for (const double w : old.player.morphWeights(old.part, time)) {
-        values.push_back(static_cast<float>(w));
-      }
-      const std::vector<float>& fresh = basis_.weights[old.firstFrame + f];
-      values.insert(values.end(), fresh.begin(), fresh.end());
-    }
-    addChannel(source_, animation, node, "weights", values, "SCALAR");
   }
 
   // Normals that turn by less than this, in radians, are not stored.
@@ -280,8 +246,8 @@ RigBakeReport writeRigAsMorphs(std::span<const RigClip> clips, const MorphOption
   report.added = basis.targets.size();
   report.plain = basis.targets.empty();
   report.files = {path};
-  measurePlayed(path, source.scale, played, basis.targets.size(), report);
-  report.others = measureOthers(source, path, others, basis.targets.size());
+  measurePlayed(path, source.scale, played, report);
+  report.others = measureOthers(source, path, others);
   return report;
 }
 

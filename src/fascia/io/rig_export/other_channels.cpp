@@ -49,6 +49,14 @@ bool movesJoint(const RigSource& source, const Json& channel) {
          std::ranges::find(joints, static_cast<int>(node->number())) != joints.end();
 }
 
+bool weighsMorphs(const Json& channel, int node) {
+  const Json* target = channel.find("target");
+  const Json* path = target ? target->find("path") : nullptr;
+  const Json* index = target ? target->find("node") : nullptr;
+  return path && path->is(Json::Kind::text) && path->text() == "weights" && index &&
+         static_cast<int>(index->number()) == node;
+}
+
 std::size_t cutOtherChannels(RigSource& source, int animation, const GltfSpan& span) {
   const Json old = source.document.item("animations", animation);
   KeyWriter writer(source, old);

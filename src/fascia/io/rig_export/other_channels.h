@@ -12,6 +12,9 @@ namespace fascia {
 // Whether a channel turns or moves one of the rig's joints: what a bake replaces.
 bool movesJoint(const RigSource& source, const Json& channel);
 
+// Whether it is of the weights of a node's morph targets.
+bool weighsMorphs(const Json& channel, int node);
+
 // Makes an animation anew of what it does beside moving joints (morph targets, props, sizes, what
 // extensions animate), cut or repeated to a span of its clock. Returns how many channels could not
 // be cut, and are left out.

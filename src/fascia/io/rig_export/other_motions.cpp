@@ -67,8 +67,7 @@ BoneFrames posesOfOthers(const RiggedModel& model, const std::vector<OtherMotion
 }
 
 std::vector<RigBakeReport::Motion> measureOthers(const RigSource& source, const std::string& path,
-                                                 const std::vector<OtherMotion>& others,
-                                                 std::size_t ownTargets) {
+                                                 const std::vector<OtherMotion>& others) {
   const RiggedModel& model = source.clip.model;
   std::vector<RigBakeReport::Motion> out(others.size());
   if (others.empty()) return out;
@@ -77,8 +76,8 @@ std::vector<RigBakeReport::Motion> measureOthers(const RigSource& source, const 
   parallelFor(others.size(), [&](std::size_t k) {
     const OtherMotion& other = others[k];
     const double scale = source.scale;
-    const RigPlayer was(before, model.parts, other.animation, scale, 0);
-    const RigPlayer is(after, model.parts, other.animation, scale, ownTargets);
+    const RigPlayer was(before, model.parts, other.animation, scale);
+    const RigPlayer is(after, model.parts, other.animation, scale);
     std::vector<Eigen::Vector3f> expected, found;
     double sum_m2 = 0, largest_m2 = 0;
     for (const double time_s : other.times(kMeasured)) {

@@ -28,7 +28,6 @@ BoneFrames posesOfOthers(const RiggedModel& model, const std::vector<OtherMotion
 
 // How far each of them is in a written file from what it was in the source: both are played.
 std::vector<RigBakeReport::Motion> measureOthers(const RigSource& source, const std::string& path,
-                                                 const std::vector<OtherMotion>& others,
-                                                 std::size_t ownTargets);
+                                                 const std::vector<OtherMotion>& others);
 
 }  // namespace fascia

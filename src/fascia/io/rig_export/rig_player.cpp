@@ -16,13 +16,12 @@ int accessorOf(const GltfDocument& document, const GltfPlace& place) {
 }  // namespace
 
 RigPlayer::RigPlayer(const GltfDocument& document, std::span<const RigPart> parts, int animation,
-                     double scale, std::size_t ownTargets)
-    : document_(document), scene_(GltfScene::of(document, scale, notes_)), ownTargets_(ownTargets) {
+                     double scale)
+    : document_(document), scene_(GltfScene::of(document, scale, notes_)) {
   readSkins();
   for (const RigPart& part : parts) readPart(part);
   if (animation < 0) return;
   clip_ = readGltfClip(document, scene_, at(animation), notes_);
-  readWeightTracks(animation);
 }
 
 void RigPlayer::readSkins() {
@@ -86,19 +85,6 @@ void RigPlayer::readPart(const RigPart& source) {
   }
 }
 
-void RigPlayer::readWeightTracks(int animation) {
-  const GltfPlace json = document_.root()["animations"].at(at(animation));
-  const GltfPlace channels = json["channels"];
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const GltfPlace target = channels.at(c)["target"];
-    if (target["path"].textOr("") != "weights" || !target["node"]) continue;
-    WeightTrack track;
-    track.node = target["node"].index(static_cast<int>(scene_.nodes.size()));
-    if (readGltfKeys(document_, json, *channels.at(c).json(), track.keys))
-      weightTracks_.push_back(std::move(track));
-  }
-}
-
 std::vector<Affine> RigPlayer::nodesAt(double time_s) const {
   std::vector<GltfNode> nodes = scene_.nodes;
   for (const GltfChannel& channel : clip_.channels) {
@@ -118,7 +104,7 @@ std::vector<Affine> RigPlayer::nodesAt(double time_s) const {
 std::vector<double> RigPlayer::morphWeights(std::size_t index, double time_s) const {
   const Part& part = parts_[index];
   std::vector<double> out(part.restWeights.begin(), part.restWeights.end());
-  for (const WeightTrack& track : weightTracks_) {
+  for (const GltfWeightChannel& track : clip_.weights) {
     if (track.node != part.node || track.keys.width != out.size()) continue;
     const std::vector<float> values = track.keys.valueAt(time_s);
     out.assign(values.begin(), values.end());
@@ -131,8 +117,7 @@ void RigPlayer::pose(double time_s, std::vector<Eigen::Vector3f>& vertices) cons
   vertices.clear();
   for (std::size_t index = 0; index < parts_.size(); ++index) {
     const Part& part = parts_[index];
-    std::vector<double> morph = morphWeights(index, time_s);
-    for (std::size_t t = 0; t + ownTargets_ < morph.size(); ++t) morph[t] = 0;
+    const std::vector<double> morph = morphWeights(index, time_s);
     std::vector<Affine> joints;
     if (part.skin >= 0) {
       const Skin& skin = skins_[at(part.skin)];
@@ -206,11 +191,11 @@ BakeError playedError(const RigPlayer& player, double start_s,
 }
 
 void measurePlayed(const std::string& path, double scale, std::span<const PlayedClip> played,
-                   std::size_t ownTargets, RigBakeReport& report) {
+                   RigBakeReport& report) {
   const GltfDocument document = GltfDocument::read(path);
   FrameErrors all;
   for (const PlayedClip& p : played) {
-    const RigPlayer player(document, p.clip.model.parts, p.animation, scale, ownTargets);
+    const RigPlayer player(document, p.clip.model.parts, p.animation, scale);
     const FrameErrors errors = errorsOf(player, p.start_s, p.clip.recording.frames);
     report.baked.push_back({p.clip.motion, errors.error()});
     all.add(errors);

@@ -14,10 +14,9 @@ namespace fascia {
 // nothing of how the file was made, and so can tell how well it plays what it should.
 class RigPlayer {
  public:
-  // parts: node and primitive of what is wanted. animation: -1 = at rest. Only the last
-  // `ownTargets` morph targets of a mesh are played: the simulation knew nothing of others.
+  // parts: node and primitive of what is wanted. animation: -1 = at rest.
   RigPlayer(const GltfDocument& document, std::span<const RigPart> parts, int animation,
-            double scale, std::size_t ownTargets);
+            double scale);
 
   // Vertices of all parts, one after the other, in metres. May be called from several threads.
   void pose(double time_s, std::vector<Eigen::Vector3f>& vertices) const;
@@ -27,10 +26,6 @@ class RigPlayer {
   std::vector<double> morphWeights(std::size_t part, double time_s) const;
 
  private:
-  struct WeightTrack {  // of morph targets
-    int node = 0;
-    GltfKeys keys;
-  };
   struct Skin {
     std::vector<int> nodes;
     std::vector<Affine> inverseBind;
@@ -47,16 +42,13 @@ class RigPlayer {
 
   void readPart(const RigPart& part);
   void readSkins();
-  void readWeightTracks(int animation);
 
   const GltfDocument& document_;
   std::vector<std::string> notes_;
   GltfScene scene_;
   GltfClip clip_;
-  std::vector<WeightTrack> weightTracks_;
   std::vector<Skin> skins_;
   std::vector<Part> parts_;
-  std::size_t ownTargets_;
 };
 
 // How far what a player shows is from recorded frames; start_s: the first one's, on its clock.
@@ -73,6 +65,6 @@ struct PlayedClip {
 // Reads a file that was written for clips, with the scale that it needs, and compares every frame:
 // fills in `error` and `baked`.
 void measurePlayed(const std::string& path, double scale, std::span<const PlayedClip> played,
-                   std::size_t ownTargets, RigBakeReport& report);
+                   RigBakeReport& report);
 
 }  // namespace fascia

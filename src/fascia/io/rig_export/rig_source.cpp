@@ -7,6 +7,7 @@
 #include <fascia/base/index.h>
 #include <fascia/base/suggest.h>
 #include <fascia/rig/blend_skinning.h>
+#include <fascia/rig/morph_blend.h>
 
 namespace fascia {
 namespace {
@@ -30,6 +31,10 @@ void checkClip(const RigClip& clip) {
         clip.joints_world[f].size() != clip.model.joints.size()) {
       refuseClip(clip, "the recording is of another character");
     }
+    if (frames[f].morphs.size() != clip.model.morphs.size())
+      refuseClip(clip, "the recording lacks the weights of the character's morphs");
+    for (const double w : frames[f].morphs)
+      if (!std::isfinite(w)) refuseClip(clip, "the recording has weights that are no numbers");
     for (const Eigen::Vector3f& p : frames[f].skin_m) {
       if (!p.allFinite()) refuseClip(clip, "the recording has vertices that are no numbers");
     }
@@ -174,11 +179,14 @@ Affine RigSource::unit() const {
 
 PointFrames pointFrames(const RigClip& clip) {
   PointFrames frames;
+  const BoneFrames bones = clip.model.morphs.empty() ? BoneFrames() : boneFrames(clip);
   for (const Recording::Frame& frame : clip.recording.frames) {
+    const std::size_t f = frames.size();
     std::vector<Eigen::Vector3f>& points = frames.emplace_back(clip.model.points_m);
     for (std::size_t v = clip.model.vertices.size(); v-- > 0;) {
       points[clip.model.vertices[v].point] = frame.skin_m[v];
     }
+    if (!bones.empty()) addMorphs(clip.model, frame.morphs, bones[f], -1, points);
   }
   return frames;
 }

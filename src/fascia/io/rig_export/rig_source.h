@@ -43,7 +43,8 @@ struct RigSource {
   Affine bindOfJoint(int joint) const { return rig.bind_world[static_cast<std::size_t>(joint)]; }
 };
 
-// Frames of the model's points out of those of its vertices.
+// Frames of the model's points out of those of its vertices, without what the file's own morph
+// targets make of them: players add that.
 PointFrames pointFrames(const RigClip& clip);
 
 // Motion of every joint from the bind pose to every frame.

@@ -15,7 +15,7 @@ namespace fascia {
 struct RigClip {
   // If it came from a glTF, that must be unchanged since it was read.
   const RiggedModel& model;
-  const Recording& recording;  // skin_m: model.vertices, in their order
+  const Recording& recording;  // skin_m: model.vertices, in their order; morphs: the model's
   // Frame by frame, per joint of the model: the world frames that the skin was simulated with.
   const std::vector<std::vector<Transform>>& joints_world;
   std::string motion;  // name of the animation: an old one of this name is replaced

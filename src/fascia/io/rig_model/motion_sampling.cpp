@@ -59,6 +59,7 @@ void appendFrame(const RiggedModel& model, const std::vector<Transform>& world,
 
 void closeLoop(double size_m, SampledMotion& motion) {
   constexpr float kSameAngle_rad = 0.01f, kSameShift = 0.002f;  // of the size
+  constexpr float kSameWeight = 0.01f;
   const std::size_t count = motion.joints.size(), last = motion.rotation.size() - count;
   if (last < 2 * count) return;
   const float shift = kSameShift * static_cast<float>(size_m);
@@ -66,7 +67,11 @@ void closeLoop(double size_m, SampledMotion& motion) {
     if (motion.rotation[j].angularDistance(motion.rotation[last + j]) > kSameAngle_rad) return;
     if ((motion.translation_m[j] - motion.translation_m[last + j]).norm() > shift) return;
   }
+  const std::size_t morphs = motion.morphs.size(), lastWeight = motion.weights.size() - morphs;
+  for (std::size_t m = 0; m < morphs; ++m)
+    if (std::abs(motion.weights[m] - motion.weights[lastWeight + m]) > kSameWeight) return;
   motion.loop = true;
+  motion.weights.resize(lastWeight);
   motion.rotation.resize(last);
   motion.translation_m.resize(last);
 }

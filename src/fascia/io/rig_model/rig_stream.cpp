@@ -45,6 +45,45 @@ void writeMotion(const SampledMotion& motion, ByteWriter& out) {
   out.list(motion.translation_m);
 }
 
+// Of a file that knows of morphs.
+void writeWeights(const SampledMotion& motion, ByteWriter& out) {
+  out.value(static_cast<std::uint64_t>(motion.morphs.size()));
+  for (const std::string& morph : motion.morphs) out.text(morph);
+  out.list(motion.weights);
+}
+
+void readWeights(SampledMotion& motion, ByteReader& in) {
+  readList(in, motion.morphs, [](ByteReader& from) { return from.text(); });
+  in.list(motion.weights);
+  require(motion.weights.size() == motion.frameCount() * motion.morphs.size(), in,
+          "a motion of unequal parts");
+  for (const float w : motion.weights) require(std::isfinite(w), in, "a weight that is no number");
+}
+
+void writeMorph(const RigMorph& morph, ByteWriter& out) {
+  out.text(morph.name);
+  out.value(morph.node);
+  out.value(morph.target);
+  out.value(morph.rest);
+  out.list(morph.points);
+  out.list(morph.displacement_m);
+}
+
+RigMorph readMorph(ByteReader& in) {
+  RigMorph morph;
+  morph.name = in.text();
+  morph.node = in.value<int>();
+  morph.target = in.value<int>();
+  morph.rest = in.value<float>();
+  in.list(morph.points);
+  in.list(morph.displacement_m);
+  require(morph.displacement_m.size() == morph.points.size() && std::isfinite(morph.rest), in,
+          "a morph of unequal parts");
+  for (const Eigen::Vector3f& d : morph.displacement_m)
+    require(d.allFinite(), in, "a morph that is not finite numbers");
+  return morph;
+}
+
 SampledMotion readMotion(ByteReader& in) {
   SampledMotion motion;
   motion.name = in.text();
@@ -190,6 +229,21 @@ void writeRig(const RiggedModel& model, std::span<const SampledMotion> motions, 
   for (const RigMaterial& material : model.materials) writeMaterial(material, out);
   out.value(static_cast<std::uint64_t>(motions.size()));
   for (const SampledMotion& motion : motions) writeMotion(motion, out);
+}
+
+void writeRigMorphs(const RiggedModel& model, std::span<const SampledMotion> motions,
+                    ByteWriter& out) {
+  out.value(static_cast<std::uint64_t>(model.morphs.size()));
+  for (const RigMorph& morph : model.morphs) writeMorph(morph, out);
+  for (const SampledMotion& motion : motions) writeWeights(motion, out);
+}
+
+void readRigMorphs(ByteReader& in, RiggedModel& model) {
+  readList(in, model.morphs, readMorph);
+  for (const RigMorph& morph : model.morphs)
+    for (const std::uint32_t p : morph.points)
+      require(p < model.points_m.size(), in, "a morph of points that are not there");
+  for (SampledMotion& motion : model.motions) readWeights(motion, in);
 }
 
 RiggedModel readRig(ByteReader& in) {

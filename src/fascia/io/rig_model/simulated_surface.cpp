@@ -84,13 +84,15 @@ std::string threeDigits(double value) {
 }  // namespace
 
 void buildSimulatedSurface(std::span<const Eigen::Vector3f> positions_m,
-                           std::span<const PointWeights> weights, RiggedModel& model) {
+                           std::span<const PointWeights> weights, RiggedModel& model,
+                           const std::function<bool(std::uint32_t, std::uint32_t)>& alike) {
   Box box;
   for (const Eigen::Vector3f& p : positions_m) box.add(p.cast<double>());
   const double size = box.empty() ? 0 : box.size().norm();
-  const Weld weld =
-      weldVertices(positions_m, model.drawnTriangles, static_cast<float>(1e-6 * size),
-                   [&](auto a, auto b) { return movedAlike(weights[a], weights[b]); });
+  const Weld weld = weldVertices(
+      positions_m, model.drawnTriangles, static_cast<float>(1e-6 * size), [&](auto a, auto b) {
+        return movedAlike(weights[a], weights[b]) && (!alike || alike(a, b));
+      });
   model.points_m.resize(weld.pointCount);
   model.weights.resize(weld.pointCount);
   for (std::size_t v = positions_m.size(); v-- > 0;) {  // a point is its first vertex

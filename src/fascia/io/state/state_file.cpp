@@ -15,7 +15,7 @@ namespace {
 // Layout, little-endian: magic; u32 version; u64 length of the rest after the hash; u64 StateHash
 // of it; the traits of the character; the members in their order.
 constexpr std::string_view kStateMagic("FSTATE\x1a\n", 8);
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::uint32_t kStateVersion = 2;  // 1 had no morphs
 constexpr std::size_t kMaxStateBytes = std::size_t{1} << 30;
 // Later, times are too coarse for steps.
 constexpr double kLatestState_s = 1e9;
@@ -55,8 +55,13 @@ bool fitsPosture(const Skeleton& skeleton, const Posture& posture) {
 // Parameters that were applied are those that a source may say.
 bool fitParameters(const Character& character, const CharacterState& state) {
   PostureSample sample{.posture = {}, .parameters = state.sampled.parameters};
-  admit(character.skeleton(), character.flesh(), state.posture, sample);
+  admit(character.figure(), state.posture, sample);
   return sample.parameters.size() == state.sampled.parameters.size();
+}
+
+bool fitMorphs(const Morphs& morphs, const MorphPose& pose) {
+  return pose.weights.size() == morphs.size() && pose.rates.size() == morphs.size() &&
+         isWithin(pose.weights, kMostMorphWeight);
 }
 
 bool fitsBodies(const SoftFlesh* soft, const CharacterState& state) {
@@ -78,6 +83,7 @@ const char* problemOf(const Character& character, const CharacterState& state) {
   if (std::abs(state.time_s) > kLatestState_s) return "time";
   if (!fitsPosture(character.skeleton(), state.posture)) return "posture";
   if (!fitParameters(character, state)) return "parameters of solids";
+  if (!fitMorphs(character.morphs(), state.morphs)) return "weights of morphs";
   if (!fitsBodies(character.softFlesh().get(), state)) return "soft solids";
   if (!character.skin()) return state.skin.position.x.empty() ? nullptr : "skin";
   if (!fitsSkinNumbers(state.skin, character.skeleton().jointCount())) return "skin";

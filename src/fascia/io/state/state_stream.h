@@ -60,7 +60,8 @@ template <class Visit>
 void eachMember(IsA<CharacterState> auto& s, Visit& visit) {
   visit(s.time_s), visit(s.posture.values), visit(s.posture.rates), visit(s.posture.rotations);
   visit(s.bodies.t_s), visit(s.bodies.r), visit(s.bodies.v);
-  visit(s.held), visit(s.sampled.parameters), visit(s.skin);
+  visit(s.held), visit(s.sampled.parameters), visit(s.morphs.weights), visit(s.morphs.rates);
+  visit(s.skin);
 }
 
 // Vectors and matrices of fixed size are numbers in a row.

@@ -26,10 +26,12 @@ void addName(StateHash& hash, const std::string& name) {
   hash.add(name.data(), name.size());
 }
 
-std::uint64_t hashOfNames(const CharacterDef& def) {
+std::uint64_t hashOfNames(const Character& character) {
   StateHash hash;
-  for (const JointDef& joint : def.skeleton.joints) addName(hash, joint.name);
-  for (const FleshSolidDef& solid : def.flesh.solids) addName(hash, solid.name);
+  for (const JointDef& joint : character.def().skeleton.joints) addName(hash, joint.name);
+  for (const FleshSolidDef& solid : character.def().flesh.solids) addName(hash, solid.name);
+  const Morphs& morphs = character.morphs();
+  for (std::size_t i = 0; i < morphs.size(); ++i) addName(hash, morphs[i].name);
   return hash.value();
 }
 
@@ -65,7 +67,7 @@ auto traitsOf(const Character& character) {
       {Meaning::count, "degrees of freedom", character.skeleton().valueCount()},
       {Meaning::count, "solids", character.flesh().solidCount()},
       {Meaning::count, "coordinates of soft solids", soft},
-      {Meaning::names, "", hashOfNames(character.def())},
+      {Meaning::names, "", hashOfNames(character)},
       {Meaning::kind, "", static_cast<std::uint64_t>(kindOf(skin))},
       {Meaning::count, "skin points", points},
       {Meaning::count, "skin points around", columns},
@@ -80,7 +82,7 @@ std::string difference(const StateTrait& ours, std::uint64_t found) {
       return "it has " + std::to_string(found) + " " + ours.what + ", this one " +
              std::to_string(ours.value);
     case StateTrait::Meaning::names:
-      return "its joints or solids have other names";
+      return "its joints, solids or morphs have other names";
     case StateTrait::Meaning::mesh:
       return "its mesh has other triangles";
     case StateTrait::Meaning::kind:

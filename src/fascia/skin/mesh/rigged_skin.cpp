@@ -59,7 +59,7 @@ void evaluateRigged(const RiggedSkin& rigged, const SkinPose& pose, double dt_s,
                     JiggleState* jiggle, RiggedScratch& scratch, VectorArray& out) {
   rigMotion(rigged, pose, scratch.motion);
   PoseObstacles obstacles{pose.field, rigged.fleshSolids};
-  rigged.skin->evaluate(scratch.motion, {dt_s, jiggle, &obstacles}, scratch.pose, out);
+  rigged.skin->evaluate(scratch.motion, {dt_s, jiggle, &obstacles, pose.morphs}, scratch.pose, out);
   rigged.soft.move(*pose.field, pose.joints, scratch.soft, out);
 }
 

@@ -9,10 +9,11 @@
 
 namespace fascia {
 
-// The flesh and the joints at one moment.
+// The flesh and the joints at one moment, and how far morphs have changed the skin itself.
 struct SkinPose {
   const Field* field;
   std::span<const Transform> joints;
+  std::span<const double> morphs{};  // weights, one each; empty: all at rest
 };
 
 // Says where a pose puts what a skin's points are attached to; owns what memory that takes. One per

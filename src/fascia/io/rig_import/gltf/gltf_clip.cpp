@@ -25,7 +25,11 @@ class ClipReader {
     for (std::size_t i = 0; i < channels.size(); ++i) {
       const GltfPlace target = channels.at(i)["target"];
       const std::string path = target["path"].textOr("");
-      if (path == "weights" || path == "pointer") continue;  // of morph targets, of looks
+      if (path == "pointer") continue;  // of looks
+      if (path == "weights") {
+        readWeights(animation, channels.at(i), clip);
+        continue;
+      }
       GltfChannel channel;
       if (!readTarget(target, path, channel)) {
         ++skipped_.nowhere;
@@ -38,6 +42,26 @@ class ClipReader {
   }
 
  private:
+  void readWeights(const GltfPlace& animation, const GltfPlace& channel, GltfClip& clip) {
+    GltfWeightChannel weights;
+    const double node = channel["target"]["node"].numberOr(-1);
+    if (!(node >= 0 && node < static_cast<double>(scene_.nodes.size()))) {
+      ++skipped_.nowhere;
+      return;
+    }
+    weights.node = static_cast<int>(node);
+    const bool sound =
+        readGltfKeys(document_, animation, *channel.json(), weights.keys) &&
+        std::ranges::all_of(weights.keys.values, [](float v) { return isSane(v); }) &&
+        std::ranges::all_of(weights.keys.times_s, [](float t) { return isSane(t); });
+    numbers_ += weights.keys.times_s.size() + weights.keys.values.size();
+    if (numbers_ > kMostKeyNumbers) channel.fail("too many keys in one file");
+    if (sound && !weights.keys.times_s.empty())
+      clip.weights.push_back(std::move(weights));
+    else
+      ++skipped_.unsound;
+  }
+
   bool readTarget(const GltfPlace& target, const std::string& path, GltfChannel& channel) const {
     const double node = target["node"].numberOr(-1);
     if (!(node >= 0 && node < static_cast<double>(scene_.nodes.size()))) return false;
@@ -92,6 +116,13 @@ Eigen::Vector4d slerp(const Eigen::Vector4d& a, const Eigen::Vector4d& b, double
   return qa.slerp(share, qb).coeffs();  // the shorter way round
 }
 
+std::vector<const std::vector<float>*> clocksOf(const GltfClip& clip) {
+  std::vector<const std::vector<float>*> out;
+  for (const GltfChannel& c : clip.channels) out.push_back(&c.times_s);
+  for (const GltfWeightChannel& c : clip.weights) out.push_back(&c.keys.times_s);
+  return out;
+}
+
 }  // namespace
 
 Eigen::Vector4d GltfChannel::valueAt(double time_s, std::size_t& key) const {
@@ -120,13 +151,16 @@ Eigen::Vector4d GltfChannel::valueAt(double time_s, std::size_t& key) const {
 double GltfClip::start_s() const {
   double start = std::numeric_limits<double>::infinity();
   for (const GltfChannel& c : channels) start = std::min<double>(start, c.times_s.front());
-  return channels.empty() ? 0 : start;
+  for (const GltfWeightChannel& c : weights)
+    start = std::min<double>(start, c.keys.times_s.front());
+  return isEmpty() ? 0 : start;
 }
 
 double GltfClip::end_s() const {
   double end = -std::numeric_limits<double>::infinity();
   for (const GltfChannel& c : channels) end = std::max<double>(end, c.times_s.back());
-  return channels.empty() ? 0 : end;
+  for (const GltfWeightChannel& c : weights) end = std::max<double>(end, c.keys.times_s.back());
+  return isEmpty() ? 0 : end;
 }
 
 double GltfClip::naturalRate_hz() const {
@@ -134,21 +168,21 @@ double GltfClip::naturalRate_hz() const {
   const double start = start_s(), duration = end_s() - start;
   double step = duration;
   bool cubic = false;
-  for (const GltfChannel& c : channels) {
-    cubic = cubic || c.mode == GltfChannel::Mode::cubic;
-    for (std::size_t k = 1; k < c.times_s.size(); ++k) {
-      const double gap = static_cast<double>(c.times_s[k]) - c.times_s[k - 1];
+  for (const GltfChannel& c : channels) cubic = cubic || c.mode == GltfChannel::Mode::cubic;
+  for (const GltfWeightChannel& c : weights) cubic = cubic || c.keys.mode == GltfKeys::Mode::cubic;
+  const std::vector<const std::vector<float>*> clocks = clocksOf(*this);
+  for (const std::vector<float>* times_s : clocks)
+    for (std::size_t k = 1; k < times_s->size(); ++k) {
+      const double gap = static_cast<double>((*times_s)[k]) - (*times_s)[k - 1];
       if (gap > 1e-4) step = std::min(step, gap);
     }
-  }
   if (!(duration > 0)) return kRate;
   step = duration / std::round(duration / step);
-  for (const GltfChannel& c : channels) {
-    for (const float t : c.times_s) {
+  for (const std::vector<float>* times_s : clocks)
+    for (const float t : *times_s) {
       const double frames = (t - start) / step;
       if (std::abs(frames - std::round(frames)) > 0.02) return kRate;
     }
-  }
   // Few keys, or curves between them, are not to be judged by straight lines between few frames.
   const double keys = 1 / step, least = cubic ? kRate : kSlowest;
   const double rate = keys < least ? keys * std::ceil(kRate / keys) : keys;

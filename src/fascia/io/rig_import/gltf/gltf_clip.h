@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <fascia/io/gltf/gltf_keys.h>
 #include <fascia/io/rig_import/gltf/gltf_scene.h>
 
 namespace fascia {
@@ -22,10 +23,18 @@ struct GltfChannel {
   Eigen::Vector4d valueAt(double time_s, std::size_t& key) const;
 };
 
+// … and one of the weights of all morph targets of a node's mesh.
+struct GltfWeightChannel {
+  int node = 0;
+  GltfKeys keys;
+};
+
 struct GltfClip {
   std::string name;
-  std::vector<GltfChannel> channels;  // of nodes' transforms only
+  std::vector<GltfChannel> channels;  // of nodes' transforms
+  std::vector<GltfWeightChannel> weights;
 
+  bool isEmpty() const { return channels.empty() && weights.empty(); }
   double start_s() const;
   double end_s() const;
   // Frames per second that lose nothing: the rate of the keys if they keep one, else 60.

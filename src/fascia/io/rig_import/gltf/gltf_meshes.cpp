@@ -8,6 +8,7 @@
 #include <fascia/geometry/box_tree.h>
 #include <fascia/io/gltf/gltf_triangles.h>
 #include <fascia/io/rig_import/gltf/gltf_materials.h>
+#include <fascia/io/rig_import/gltf/gltf_morphs.h>
 #include <fascia/io/rig_model/rig_limits.h>
 #include <fascia/io/rig_model/simulated_surface.h>
 
@@ -17,7 +18,7 @@ namespace {
 // What was mended, over all primitives; told once.
 struct Mended {
   std::size_t notTriangles = 0, withoutPositions = 0, badCorners = 0, badPositions = 0;
-  std::size_t badJoints = 0, badSums = 0, badWeights = 0, tooMany = 0, unskinned = 0, morphed = 0;
+  std::size_t badJoints = 0, badSums = 0, badWeights = 0, tooMany = 0, unskinned = 0;
   std::size_t hung = 0, loose = 0, moving = 0, instanced = 0;
 
   void tell(std::vector<std::string>& notes) const {
@@ -33,7 +34,6 @@ struct Mended {
     note(badSums, " vertices have weights that do not sum to one: scaled");
     note(tooMany, " vertices have more than 8 weights: the heaviest 8 joints count");
     note(unskinned, " vertices have no weights: moved as the nearest ones that have");
-    note(morphed, " primitives have morph targets: kept in the file, their base is simulated");
     note(hung, " meshes without a skin hang on a joint: they move rigidly with it");
     note(moving, " meshes without a skin move by themselves: each has a joint of its own");
     note(instanced,
@@ -54,7 +54,11 @@ class MeshReader {
  public:
   MeshReader(const GltfDocument& document, const GltfScene& scene, const GltfRig& rig,
              RiggedModel& model)
-      : document_(document), scene_(scene), rig_(rig), model_(model) {}
+      : document_(document),
+        scene_(scene),
+        rig_(rig),
+        model_(model),
+        morphs_(document, scene, model) {}
 
   void read() {
     for (const int n : scene_.order) {
@@ -67,7 +71,11 @@ class MeshReader {
     giveWeightsToUnskinned();
     makeNormals();
     mended_.tell(model_.notes);
-    buildSimulatedSurface(positions_, weights_, model_);
+    morphs_.shapeRest(positions_);
+    buildSimulatedSurface(positions_, weights_, model_, [&](std::uint32_t a, std::uint32_t b) {
+      return morphs_.movedAlike(a, b);
+    });
+    morphs_.finish();
   }
 
  private:
@@ -99,7 +107,7 @@ class MeshReader {
       ++mended_.withoutPositions;
       return;
     }
-    if (place["targets"].size() > 0) ++mended_.morphed;
+    toWorld_.clear();
     RigPart part = newPart(n, index, place);
     checkBudget(attributes["POSITION"]);
     const std::vector<float> local = floats(attributes["POSITION"], 3);
@@ -111,6 +119,7 @@ class MeshReader {
     hasNormal_.resize(model_.vertices.size(), false);
     const bool mirrored =
         skinned ? placeSkinned(n, part, attributes, local) : placeRigid(n, part, attributes, local);
+    if (place["targets"].size() > 0) morphs_.read(part, place, toWorld_);
     mendPositions(part);
     readUvs(part, attributes);
     readTriangles(place, mode, mirrored, part);
@@ -257,6 +266,7 @@ class MeshReader {
                    const std::vector<float>& normals, std::size_t v, std::size_t vertex) {
     const Vec3 p = matrix * Eigen::Map<const Eigen::Vector3f>(&local[3 * v]).cast<double>();
     positions_[vertex] = p.cast<float>();
+    toWorld_.push_back(matrix.linear().cast<float>());
     if (normals.empty()) return;
     // Normals go by the inverse transpose: cofactors do without the inverse.
     const Mat3 m = matrix.linear();
@@ -384,6 +394,8 @@ class MeshReader {
   std::vector<Eigen::Vector3f> positions_;  // per vertex
   std::vector<PointWeights> weights_;
   std::vector<bool> hasNormal_;
+  std::vector<Eigen::Matrix3f> toWorld_;  // of the primitive at hand: its vertices' directions
+  GltfMorphs morphs_;
   std::vector<Unskinned> unskinned_;
   std::size_t corners_ = 0;  // read so far, also those that were left out
   Mended mended_;

@@ -5,12 +5,15 @@
 #include <set>
 
 #include <fascia/base/index.h>
+#include <fascia/flesh/morphs.h>
 #include <fascia/io/rig_import/gltf/gltf_clip.h>
 #include <fascia/io/rig_model/motion_sampling.h>
 
 namespace fascia {
 namespace {
 
+// Whose frames are as many numbers as a node's.
+constexpr std::size_t kMorphsPerNode = 7;
 constexpr double kMostClipNodes = 2e7;  // clips times nodes: every clip begins with all nodes
 
 // The joints' nodes and those above them, parents first: no other moves a joint.
@@ -144,15 +147,48 @@ class ClipPlayer {
   std::vector<bool> sized_;  // per node: the clip changes its scale
 };
 
+// The weights of a model's morphs that a clip animates, time after time.
+class WeightPlayer {
+ public:
+  WeightPlayer(const GltfClip& clip, const RiggedModel& model, SampledMotion& motion)
+      : motion_(motion) {
+    for (const GltfWeightChannel& channel : clip.weights) {
+      const auto first = std::ranges::find(model.morphs, channel.node, &RigMorph::node);
+      const auto count = std::ranges::count(model.morphs, channel.node, &RigMorph::node);
+      if (channel.keys.width != static_cast<std::size_t>(count)) continue;
+      const bool second =
+          std::ranges::find(channels_, channel.node, &GltfWeightChannel::node) != channels_.end();
+      if (second) continue;
+      channels_.push_back(channel);
+      for (auto morph = first; morph != first + count; ++morph)
+        motion.morphs.push_back(morph->name);
+    }
+  }
+
+  void append(double time_s) {
+    constexpr auto kMost = static_cast<float>(kMostMorphWeight);
+    for (const GltfWeightChannel& channel : channels_)
+      for (const float weight : channel.keys.valueAt(time_s))
+        motion_.weights.push_back(std::clamp(weight, -kMost, kMost));
+  }
+
+ private:
+  std::vector<GltfWeightChannel> channels_;
+  SampledMotion& motion_;
+};
+
 SampledMotion play(ClipPlayer& player, const GltfClip& clip, const MotionPlan& plan,
                    const RiggedModel& model) {
   SampledMotion motion;
   motion.name = clip.name;
   motion.rate_hz = plan.rate_hz;
   for (const RigJoint& joint : model.joints) motion.joints.push_back(joint.name);
+  WeightPlayer weights(clip, model, motion);
   const double start = clip.start_s();
   for (std::size_t f = 0; f < plan.frames; ++f) {
-    appendFrame(model, player.pose(start + static_cast<double>(f) / plan.rate_hz), motion);
+    const double time_s = start + static_cast<double>(f) / plan.rate_hz;
+    appendFrame(model, player.pose(time_s), motion);
+    weights.append(time_s);
   }
   closeLoop(model.size_m(), motion);
   return motion;
@@ -175,7 +211,8 @@ void readGltfMotions(const GltfDocument& document, const GltfScene& scene, const
   spans.reserve(clips.size());
   for (const GltfClip& clip : clips)
     spans.push_back({clip.name, clip.end_s() - clip.start_s(), clip.naturalRate_hz()});
-  const std::vector<MotionPlan> plans = planMotions(spans, above.size(), model.notes);
+  const std::vector<MotionPlan> plans =
+      planMotions(spans, above.size() + model.morphs.size() / kMorphsPerNode, model.notes);
   MotionNames names;
   for (std::size_t i = 0; i < clips.size(); ++i) {
     if (plans[i].frames == 0) continue;
