@@ -56,8 +56,8 @@ class JoltLayers {
     broad_.MapObjectToBroadPhaseLayer(kSheetLayer, JPH::BroadPhaseLayer(1));
     pairs_.EnableCollision(kSpheresLayer, kSheetLayer);
     // Reads the others' tables.
-    pairsInBroad_ = std::make_unique<JPH::ObjectVsBroadPhaseLayerFilterTable>(broad_, kLayers,
-                                                                              pairs_, kLayers);
+    pairsInBroad_ =
+        std::make_unique<JPH::ObjectVsBroadPhaseLayerFilterTable>(broad_, kLayers, pairs_, kLayers);
   }
   void init(JPH::PhysicsSystem& world) const {
     constexpr JPH::uint kBodies = 64;
@@ -75,8 +75,7 @@ class JoltLayers {
 class JoltSheet final : public SheetSolver {
  public:
   JoltSheet(const SheetScene& scene, int iterations, int threads)
-      : scene_(scene),
-        jobs_(JPH::cMaxPhysicsJobs, JPH::cMaxPhysicsBarriers, threads - 1) {
+      : scene_(scene), jobs_(JPH::cMaxPhysicsJobs, JPH::cMaxPhysicsBarriers, threads - 1) {
     layers_.init(world_);
     world_.SetGravity({0, static_cast<float>(-SheetScene::kGravity_m_per_s2), 0});
     addSpheres();
@@ -122,9 +121,9 @@ class JoltSheet final : public SheetSolver {
     for (int j = 0; j < scene_.side; ++j)
       for (int i = 0; i < scene_.side; ++i)
         cloth->mVertices.emplace_back(JPH::Float3(static_cast<float>(i * scene_.spacing_m()), 0,
-                                                static_cast<float>(j * scene_.spacing_m())),
-                                    JPH::Float3(0, 0, 0),
-                                    scene_.pinned(j) ? 0 : inverseMass_per_kg);
+                                                  static_cast<float>(j * scene_.spacing_m())),
+                                      JPH::Float3(0, 0, 0),
+                                      scene_.pinned(j) ? 0 : inverseMass_per_kg);
     for (int j = 0; j + 1 < scene_.side; ++j)
       for (int i = 0; i + 1 < scene_.side; ++i) {
         cloth->AddFace({index(i, j), index(i, j + 1), index(i + 1, j + 1)});
@@ -143,8 +142,8 @@ class JoltSheet final : public SheetSolver {
   }
 
   void addSheet(int iterations) {
-    JPH::SoftBodyCreationSettings settings(makeCloth(), JPH::RVec3::sZero(),
-                                           JPH::Quat::sIdentity(), kSheetLayer);
+    JPH::SoftBodyCreationSettings settings(makeCloth(), JPH::RVec3::sZero(), JPH::Quat::sIdentity(),
+                                           kSheetLayer);
     settings.mNumIterations = static_cast<JPH::uint32>(iterations);
     settings.mLinearDamping = 0;
     settings.mFriction = 0.5f;

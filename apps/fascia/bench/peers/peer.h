@@ -11,8 +11,8 @@ namespace fascia {
 // Another engine that can simulate the sheet.
 struct Peer {
   const char* name;
-  // Effort 1 is its default; with twice the effort it takes twice as many steps, stretches less and is
-  // slower.
+  // Effort 1 is its default; with twice the effort it takes twice as many steps, stretches less and
+  // is slower.
   std::string (*setting)(int effort);
   std::unique_ptr<SheetSolver> (*make)(const SheetScene& scene, int effort, int threads);
   bool threaded;
