@@ -35,8 +35,10 @@ constexpr float kSlidingReach = 0.02f;
 // How often stretched skin is shortened and taken out of the flesh again in one interval, at most.
 constexpr int kStretchRounds = 8;
 constexpr float kStretchedBeyond = 0.1f;  // as long as an edge is longer than it may be by so much
-// Where an edge is still twice as long as it may be, nothing has helped.
+// Where more than this share of all edges is still twice as long as may be, nothing has helped.
+// (Where fewer are, something is squeezed for a moment, and comes free.)
 constexpr float kTorn = 1;
+constexpr double kMostTorn = 0.005;
 // Stretched skin is also shortened within an interval, after so many steps: very stiff skin has
 // pulled far by then.
 constexpr int kStepsBetweenLimits = 32;
@@ -341,7 +343,8 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
     stretchLimit_.apply(skin_.points(), state.position, state.velocity);
     leaveFlesh();
   }
-  if (stretchLimit_.exceeded(state.position, kTorn)) {
+  if (stretchLimit_.exceeded(state.position, kTorn) &&
+      stretchLimit_.shareExceeding(state.position, kTorn) > kMostTorn) {
     startAnew(pose, state, stats);
     leaveFlesh();
   }
