@@ -83,7 +83,7 @@ void contact(benchmark::State& state, const char* name) {
   const Scene scene(name, 64, 16);
   const Skin& skin = scene.skin();
   const SkinState& start = scene.state.skin;
-  FleshContact flesh({skin.blocks().begin(), skin.blocks().end()});
+  FleshContact flesh(skin.blocks());
   PointSurroundings around = start.surroundings;
   VectorArray position = start.position, velocity = start.velocity;
   const auto reach_m = static_cast<float>(0.02 * skin.size_m());

@@ -18,9 +18,6 @@ void addBench(CLI::App& program, Console& console) {
   addEditingBench(group, console);
   addDrawingBench(group, console);
   addSheetBench(group, console);
-#ifdef FASCIA_WITH_BULLET
-  addPeersBench(group, console);
-#endif
 }
 
 }  // namespace fascia

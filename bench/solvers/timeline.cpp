@@ -26,7 +26,7 @@ class SchemeRunner {
         skin_(*character.skin()),
         motion_(motion),
         scheme_(scheme),
-        contact_({skin_.blocks().begin(), skin_.blocks().end()}),
+        contact_(skin_.blocks()),
         position_(start.position),
         velocity_(start.velocity) {
     around_.resize(skin_.grid()->layout().storage());

@@ -73,7 +73,9 @@ class StateCopies : public testing::TestWithParam<std::string> {};
 
 TEST_P(StateCopies, GoOnLikeTheOriginal) {
   Random random(11);
-  for (const char* integrator : {"auto", "leapfrog", "verlet", "rosenbrock4"}) {
+  for (const char* integrator : {"auto", "leapfrog", "cloth", "verlet", "rosenbrock4"}) {
+    if (integrator == std::string_view("cloth") && readCharacterFile(GetParam()).def.skin->surface)
+      continue;  // of grids
     const bool implicit = std::string_view(integrator) == "rosenbrock4";
     const int side = implicit ? 8 : 24;
     expectCopiesToGoOn(test::loadExample(GetParam(), side, side, integrator), random, integrator);

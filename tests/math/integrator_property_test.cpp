@@ -97,6 +97,48 @@ TEST(Leapfrog, EvaluatesPositionForcesOncePerStepAndIteratesVelocityForcesOnly) 
   EXPECT_GT(system.velocityCalls, 20);
 }
 
+// Solves for the new velocity itself.
+class SolvedOscillator : public Oscillator {
+ public:
+  using Oscillator::Oscillator;
+  bool midpointKick(double t, std::span<const double> r, std::span<const double> v, double h,
+                    std::span<double> out) override {
+    double force = 0, drag = 0;
+    const double one = 1;
+    addPositionForces(t, r, {&force, 1});
+    Oscillator::addVelocityForces(t, r, {&one, 1}, {&drag, 1});
+    velocityCalls = 0;
+    const double a = 0.5 * h * inverseMass()[0];
+    out[0] = (v[0] * (1 + a * drag) + 2 * a * force) / (1 - a * drag);
+    return true;
+  }
+};
+
+TEST(Leapfrog, AsksNoVelocityForcesOfASystemThatSolvesForTheVelocity) {
+  Oscillator iterated(4, 2);
+  SolvedOscillator solved(4, 2);
+  const OdeState expected = runSteps(*make("verlet"), iterated, {0, {1}, {0}}, 1, 10);
+  const OdeState found = runSteps(*make("verlet"), solved, {0, {1}, {0}}, 1, 10);
+  EXPECT_NEAR(found.r[0], expected.r[0], 1e-5);
+  EXPECT_NEAR(found.v[0], expected.v[0], 1e-5);
+  EXPECT_EQ(solved.positionCalls, 10);
+  EXPECT_EQ(solved.velocityCalls, 0);
+}
+
+TEST(FiniteCheck, KnowsInfinitiesAndNotANumber) {
+  using Limits = std::numeric_limits<double>;
+  FiniteCheck sound;
+  for (const double x : {0.0, -0.0, 1e-310, -1.5, Limits::max(), Limits::lowest()}) sound.add(x);
+  EXPECT_TRUE(sound.allFinite());
+  for (const double x :
+       {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN(), -Limits::signaling_NaN()}) {
+    FiniteCheck check = sound;
+    check.add(x);
+    check.add(1);
+    EXPECT_FALSE(check.allFinite());
+  }
+}
+
 TEST(Leapfrog, SolvesTheMidpointVelocityEquation) {
   const double k = 4, c = 2, h = 0.1;
   Oscillator system(k, c);

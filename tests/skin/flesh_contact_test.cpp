@@ -17,6 +17,7 @@ struct Cloud {
   VectorArray position, velocity;
   double fat_m;
   PointSurroundings around;
+  std::vector<PointBlock> blocks;
   FleshContact contact;
 
   explicit Cloud(double reach_m, double fat = 0.01) : fat_m(fat) {
@@ -25,7 +26,6 @@ struct Cloud {
     points.fat = test::constant(layout, fat_m);
     points.free = test::constant(layout, 1);
     Random random(61);
-    std::vector<PointBlock> blocks;
     test::forEachPoint(layout, [&](int i, int, std::size_t k) {
       const auto within = [&](double r) {
         return Vec3(random.uniform(-r, r), random.uniform(-r, r), random.uniform(-r, r));
@@ -272,6 +272,28 @@ TEST(FleshContact, RemembersOnlyWhatChangesNothing) {
   for (const double step_m : {0.01, 0.05}) {
     expectMemoryChangesNothing(chain, step_m);
     expectMemoryChangesNothing(test::Steep<RigidSolids>(chain), step_m);
+  }
+}
+
+// Blocks are tested many at once, each as if it were alone.
+TEST(FleshContact, GivesABlockTheSameBitsWhateverOthersThereAre) {
+  for (const NamedFlesh& flesh : fleshes()) {
+    Cloud together(0.4), apart = together;
+    together.project(flesh.field);
+    for (const PointBlock& block : apart.blocks) {
+      FleshContact alone(std::span(&block, 1));
+      alone.project(flesh.field, apart.points, 0.02f, 0.f, apart.position, apart.velocity,
+                    apart.around);
+    }
+    int moved = 0;
+    const Cloud before(0.4);
+    test::forEachPoint(together.layout, [&](int, int, std::size_t k) {
+      EXPECT_EQ(test::at(together.position, k), test::at(apart.position, k)) << flesh.name;
+      EXPECT_EQ(test::at(together.velocity, k), test::at(apart.velocity, k)) << flesh.name;
+      EXPECT_EQ(test::at(together.around.normal, k), test::at(apart.around.normal, k));
+      moved += test::at(together.position, k) != test::at(before.position, k);
+    });
+    EXPECT_GT(moved, 50) << flesh.name;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fascia/math/points.h>
 #include <fascia/skin/grid/grid_stretch_limit.h>
+#include <fascia/skin/mesh/mesh_stretch_limit.h>
 
 #include "grids.h"
 
@@ -76,20 +77,43 @@ TEST(StretchLimit, SeesEveryEdge) {
 }
 
 // The last row is taken 2 % of the sheet's length farther than it can go without tearing at it;
-// edges alone would pull along few rows of many.
+// edges alone would pull along few rows of many. The levels are the grid's, or those of its edges.
 TEST(StretchLimit, PullsFartherByItsLevels) {
-  for (const int rows : {129, 130}) {
-    Sheet sheet(16, rows);
-    for (int i = 0; i < 16; ++i) sheet.fix(i, rows - 1);
-    sheet.pullLastRow(0.27 * kSpacing_m * rows);
-    Sheet flat = sheet;
-    flat.limit = StretchLimit({gridStretchLimits(flat.grid, kLimit).back()});
-    for (Sheet* s : {&sheet, &flat})
-      for (int interval = 0; interval < 3; ++interval) s->apply();
-    EXPECT_LT(sheet.grid.maxStretch(sheet.position), 0.7 * flat.grid.maxStretch(flat.position))
-        << rows;
-    for (int interval = 0; interval < 20; ++interval) sheet.apply();
-    EXPECT_LT(sheet.grid.maxStretch(sheet.position), 1.4 * kLimit) << rows;
+  for (const bool asMesh : {false, true}) {
+    for (const int rows : {129, 130}) {
+      Sheet sheet(16, rows);
+      for (int i = 0; i < 16; ++i) sheet.fix(i, rows - 1);
+      sheet.pullLastRow(0.27 * kSpacing_m * rows);
+      const std::vector<StretchLimit::Edge> edges =
+          gridStretchLimits(sheet.grid, kLimit).back().edges;
+      if (asMesh) sheet.limit = StretchLimit(meshStretchLimits(edges));
+      Sheet flat = sheet;
+      flat.limit = StretchLimit({{edges, {}}});
+      for (Sheet* s : {&sheet, &flat})
+        for (int interval = 0; interval < 3; ++interval) s->apply();
+      EXPECT_LT(sheet.grid.maxStretch(sheet.position), 0.7 * flat.grid.maxStretch(flat.position))
+          << rows << ' ' << asMesh;
+      for (int interval = 0; interval < 20; ++interval) sheet.apply();
+      EXPECT_LT(sheet.grid.maxStretch(sheet.position), 1.6 * kLimit) << rows << ' ' << asMesh;
+    }
+  }
+}
+
+// No chord of a coarser level is longer than the shortest way along the edges.
+TEST(StretchLimit, LevelsOfAMeshDoNotContradictEachOther) {
+  const Sheet sheet(24, 40);
+  const auto levels = meshStretchLimits(gridStretchLimits(sheet.grid, kLimit).back().edges);
+  ASSERT_GT(levels.size(), 2u);
+  std::size_t edges = 0;
+  for (const StretchLimit::Level& level : levels) {
+    EXPECT_GT(level.edges.size(), edges);
+    edges = level.edges.size();
+    for (const StretchLimit::Edge& edge : level.edges) {
+      const Vec3 way = pointAt(sheet.position, edge.b) - pointAt(sheet.position, edge.a);
+      EXPECT_GE(edge.longest_m, kLimit * way.lpNorm<1>() - 1e-6);
+    }
+    for (const StretchLimit::Follower& f : level.followers)
+      EXPECT_NEAR(f.weights[0] + f.weights[1] + f.weights[2] + f.weights[3], 1, 1e-5);
   }
 }
 

@@ -16,6 +16,5 @@ void addReflexesBench(CLI::App& group, Console& console);
 void addEditingBench(CLI::App& group, Console& console);
 void addDrawingBench(CLI::App& group, Console& console);
 void addSheetBench(CLI::App& group, Console& console);
-void addPeersBench(CLI::App& group, Console& console);  // only where Bullet was found
 
 }  // namespace fascia

@@ -5,6 +5,7 @@
 
 #include <fascia/math/ode/integrators.h>
 #include <fascia/math/ode/stability.h>
+#include <fascia/math/points.h>
 
 namespace fascia {
 namespace {
@@ -53,35 +54,22 @@ OdeSkin::OdeSkin(const Skin& skin)
     : skin_(skin),
       stepper_(makeIntegrator(skin.settings().integrator), optionsOf(skin)),
       inverseMass_(3 * skin.pointCount()),
-      points_(skin.pointCount()),
-      anchors_(skin.pointCount()),
+      inverseMasses_(skin.topology().storage(), 0.f),
       surface_(skin.topology().makeStepper()) {
   const PointModel& model = skin.points();
   for (std::size_t p = 0; p < skin.pointCount(); ++p) {
     const std::size_t k = skin.storageIndex(p);
-    points_[p] = {k,
-                  model.mass[k],
-                  model.drag[k],
-                  model.tissueStiffness[k],
-                  model.tissueDamping[k],
-                  model.tissueRestLength[k]};
-    const double inverse = model.free[k] > 0 ? 1.0 / model.mass[k] : 0;
-    for (std::size_t c = 0; c < 3; ++c) inverseMass_[3 * p + c] = inverse;
+    if (!(model.free[k] > 0)) continue;
+    inverseMasses_[k] = 1 / model.mass[k];
+    for (std::size_t c = 0; c < 3; ++c) inverseMass_[3 * p + c] = 1.0 / model.mass[k];
   }
   ode_.resize(inverseMass_.size());
-  strandDamping_.resize(points_.size());
-  dampingPlace_.reserve(inverseMass_.size());
-  for (VectorArray* a : {&position_, &velocity_, &force_}) a->resize(skin.topology().storage());
+  for (VectorArray* a : {&position_, &velocity_, &force_, &change_})
+    a->resize(skin.topology().storage());
 }
 
 void OdeSkin::load(std::span<const double> r, VectorArray& out) const {
-  for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = points_[p].storage;
-    out.x[k] = static_cast<float>(r[3 * p]);
-    out.y[k] = static_cast<float>(r[3 * p + 1]);
-    out.z[k] = static_cast<float>(r[3 * p + 2]);
-  }
-  skin_.topology().complete(out);
+  loadCoordinates(skin_.topology().ranges(), r, out);
 }
 
 void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, SkinContact& contact,
@@ -90,7 +78,7 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, SkinC
   poses_ = &poses, contact_ = &contact, state_ = &state;
   ode_.t_s = start_s;
   for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = points_[p].storage;
+    const std::size_t k = skin_.storageIndex(p);
     const VectorArray* arrays[2] = {&state.position, &state.velocity};
     std::vector<double>* flat[2] = {&ode_.r, &ode_.v};
     for (int a = 0; a < 2; ++a) {
@@ -99,14 +87,6 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, SkinC
       (*flat[a])[3 * p + 2] = arrays[a]->z[k];
     }
   }
-  const PointSurroundings& around = state.surroundings;
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    const std::size_t k = points_[p].storage;
-    anchors_[p] = {
-        {around.anchor.x[k], around.anchor.y[k], around.anchor.z[k]},
-        {around.anchorVelocity.x[k], around.anchorVelocity.y[k], around.anchorVelocity.z[k]}};
-  }
-  dampingPlace_.clear();  // the anchors are others now
   // All that goes on is in the state, so that copies of it go on alike.
   if (state.odeStep_s > 0)
     stepper_.resume(state.odeStep_s);
@@ -115,8 +95,10 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, SkinC
   stepper_.resetStats();
   stepper_.advance(*this, ode_, end_s);
   state.odeStep_s = stepper_.nextStep_s();
-  load(ode_.r, state.position);
-  load(ode_.v, state.velocity);
+  for (VectorArray* a : {&state.position, &state.velocity}) {
+    load(a == &state.position ? ode_.r : ode_.v, *a);
+    skin_.topology().complete(*a);
+  }
 
   const StepperStats& s = stepper_.stats();
   stats.steps += s.steps;
@@ -129,64 +111,88 @@ void OdeSkin::advance(SkinPoseSource& poses, double start_s, double end_s, SkinC
   stats.repaired_points += s.repaired_coordinates / 3;
 }
 
-void OdeSkin::addPositionForces(double t_s, std::span<const double> r, std::span<double> f) {
+StrandScene OdeSkin::sceneAt(double t_s) const {
+  StrandScene scene{skin_.topology().ranges(),
+                    &skin_.points(),
+                    &state_->surroundings,
+                    static_cast<float>(t_s - start_s_),
+                    {}};
+  for (int a = 0; a < 3; ++a)
+    scene.gravity[a] = static_cast<float>(skin_.settings().gravity_m_per_s2[a]);
+  return scene;
+}
+
+// Of position_, which it loads.
+void OdeSkin::positionForces(const StrandScene& scene, std::span<const double> r) {
   load(r, position_);
+  skin_.topology().complete(position_);
   surface_->forces(position_, force_);
-  const Vec3& gravity = skin_.settings().gravity_m_per_s2;
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    const Point& point = points_[p];
-    Vec3 force = Vec3(force_.x[point.storage], force_.y[point.storage], force_.z[point.storage]) +
-                 point.mass * gravity;
-    const Strand s = strand(p, t_s, r);
-    if (s.squared > 0)
-      force -= point.stiffness * (1 - point.restLength / std::sqrt(s.squared)) * s.way;
-    for (std::size_t c = 0; c < 3; ++c) f[3 * p + c] += force[static_cast<Eigen::Index>(c)];
-  }
+  addStrandForces(scene, position_, force_);
 }
 
-// Strands damp along themselves; without a rest length they hold a point from all sides, and damp
-// so.
-Mat3 OdeSkin::dampingOf(const Point& point, const Strand& strand) const {
-  if (!(strand.squared > 0)) return Mat3::Zero();
-  if (point.restLength == 0) return point.damping * Mat3::Identity();
-  return point.damping / strand.squared * strand.way * strand.way.transpose();
-}
-
-void OdeSkin::prepareDamping(double t_s, std::span<const double> r) {
-  if (t_s == dampingTime_s_ && std::ranges::equal(r, dampingPlace_)) return;
-  dampingTime_s_ = t_s;
-  dampingPlace_.assign(r.begin(), r.end());
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    strandDamping_[p] = dampingOf(points_[p], strand(p, t_s, r));
-  }
+void OdeSkin::addPositionForces(double t_s, std::span<const double> r, std::span<double> f) {
+  const StrandScene scene = sceneAt(t_s);
+  positionForces(scene, r);
+  addCoordinates(scene.ranges, force_, f, f);
 }
 
 void OdeSkin::addVelocityForces(double t_s, std::span<const double> r, std::span<const double> v,
                                 std::span<double> f) {
-  prepareDamping(t_s, r);
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    const Vec3 speed(v[3 * p], v[3 * p + 1], v[3 * p + 2]);
-    const Vec3 force = points_[p].drag * speed + strandDamping_[p] * (speed - anchors_[p].velocity);
-    for (std::size_t c = 0; c < 3; ++c) f[3 * p + c] -= force[static_cast<Eigen::Index>(c)];
-  }
+  const StrandScene scene = sceneAt(t_s);
+  load(r, position_);
+  load(v, velocity_);
+  dampingForces(scene, position_, velocity_, force_);
+  addCoordinates(scene.ranges, force_, f, f);
+}
+
+bool OdeSkin::midpointKick(double t_s, std::span<const double> r, std::span<const double> v,
+                           double h_s, std::span<double> out) {
+  const StrandScene scene = sceneAt(t_s);
+  positionForces(scene, r);
+  load(v, velocity_);
+  midpointKicks(scene, inverseMasses_, static_cast<float>(h_s), position_, velocity_, force_,
+                change_);
+  addCoordinates(scene.ranges, change_, v, out);
+  return true;
+}
+
+OdeSkin::Strand OdeSkin::strand(std::size_t k, double t_s, const double* r) const {
+  const PointModel& points = skin_.points();
+  const PointSurroundings& around = state_->surroundings;
+  const Vec3 way = Vec3(r[0], r[1], r[2]) - pointAt(around.anchor, k) -
+                   (t_s - start_s_) * pointAt(around.anchorVelocity, k);
+  const double squared = way.squaredNorm(), rest = points.tissueRestLength[k];
+  const bool taut = points.tissueStiffness[k] > 0 && squared > 1e-18 && squared > rest * rest;
+  return {way, taut ? squared : 0};
+}
+
+// Strands damp along themselves; without a rest length they hold a point from all sides, and damp
+// so.
+Mat3 OdeSkin::dampingOf(std::size_t k, const Strand& strand) const {
+  const double damping = skin_.points().tissueDamping[k];
+  if (!(strand.squared > 0)) return Mat3::Zero();
+  if (skin_.points().tissueRestLength[k] == 0) return damping * Mat3::Identity();
+  return damping / strand.squared * strand.way * strand.way.transpose();
 }
 
 void OdeSkin::forceJacobian(double t_s, std::span<const double> r, std::span<const double>,
                             SparseMatrix& dfdr, SparseMatrix& dfdv) {
   load(r, position_);
+  skin_.topology().complete(position_);
   entries_.clear();
   dampingEntries_.clear();
   skin_.topology().addForceJacobian(position_, entries_);
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    const Point& point = points_[p];
-    const Strand s = strand(p, t_s, r);
+  const PointModel& points = skin_.points();
+  for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
+    const std::size_t k = skin_.storageIndex(p);
+    const Strand s = strand(k, t_s, r.data() + 3 * p);
     // Slack strands keep their zeros, so that the pattern stays and is analysed once.
-    const Mat3 damping = point.drag * Mat3::Identity() + dampingOf(point, s);
+    const Mat3 damping = points.drag[k] * Mat3::Identity() + dampingOf(k, s);
     Mat3 stiffness = Mat3::Zero();
     if (s.squared > 0) {
       const Mat3 along = s.way * s.way.transpose() / s.squared;
-      const double stretched = 1 - point.restLength / std::sqrt(s.squared);
-      stiffness = point.stiffness * (along + stretched * (Mat3::Identity() - along));
+      const double stretched = 1 - points.tissueRestLength[k] / std::sqrt(s.squared);
+      stiffness = points.tissueStiffness[k] * (along + stretched * (Mat3::Identity() - along));
     }
     const int row = static_cast<int>(3 * p);
     for (int a = 0; a < 3; ++a) {
@@ -212,24 +218,13 @@ double OdeSkin::violation(double t_s, std::span<const double> r) {
 double OdeSkin::project(double t_s, std::span<double> r, std::span<double> v) {
   load(r, position_);
   load(v, velocity_);
-  positionBefore_ = position_;
-  velocityBefore_ = velocity_;
   const Field& field = *poses_->at(t_s).field;
   const SkinContact::Result result = contact_->project(
       field, skin_.points(), 0.f, static_cast<float>(skin_.contactResponse().restitution),
       position_, velocity_, state_->surroundings);
-  // Only what was changed goes back: the rest keeps its double precision.
-  for (std::size_t p = 0; p < skin_.pointCount(); ++p) {
-    const std::size_t k = points_[p].storage;
-    const VectorArray* now[2] = {&position_, &velocity_};
-    const VectorArray* old[2] = {&positionBefore_, &velocityBefore_};
-    const std::span<double> flat[2] = {r, v};
-    for (int a = 0; a < 2; ++a) {
-      flat[a][3 * p] += double{now[a]->x[k]} - old[a]->x[k];
-      flat[a][3 * p + 1] += double{now[a]->y[k]} - old[a]->y[k];
-      flat[a][3 * p + 2] += double{now[a]->z[k]} - old[a]->z[k];
-    }
-  }
+  const std::span<const SkinTopology::Range> ranges = skin_.topology().ranges();
+  takeChanges(ranges, position_, r);
+  takeChanges(ranges, velocity_, v);
   return result.maxCorrection_m;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fascia/math/ode/adaptive_stepper.h>
 #include <fascia/math/ode/system.h>
+#include <fascia/skin/ode_kernels.h>
 #include <fascia/skin/skin.h>
 
 namespace fascia {
@@ -25,6 +26,8 @@ class OdeSkin final : public SecondOrderSystem {
   void addPositionForces(double t_s, std::span<const double> r, std::span<double> f) override;
   void addVelocityForces(double t_s, std::span<const double> r, std::span<const double> v,
                          std::span<double> f) override;
+  bool midpointKick(double t_s, std::span<const double> r, std::span<const double> v, double h_s,
+                    std::span<double> out) override;
   bool hasVelocityForces() const override { return true; }
   bool forcesDependOnTime() const override { return true; }
   void forceJacobian(double t_s, std::span<const double> r, std::span<const double> v,
@@ -34,46 +37,24 @@ class OdeSkin final : public SecondOrderSystem {
   double project(double t_s, std::span<double> r, std::span<double> v) override;
 
  private:
-  // A point's own constants, flat for the inner loops.
-  struct Point {
-    std::size_t storage;
-    double mass, drag, stiffness, damping, restLength;
-  };
-  struct Anchor {
-    Vec3 position, velocity;  // at the interval's start
-  };
   // From the anchor to the point; its squared length is 0 if the strand is slack or there is none.
   struct Strand {
     Vec3 way;
     double squared;
   };
-  Strand strand(std::size_t p, double t_s, std::span<const double> r) const {
-    const Point& point = points_[p];
-    const Anchor& a = anchors_[p];
-    const Vec3 way =
-        Vec3(r[3 * p], r[3 * p + 1], r[3 * p + 2]) - (a.position + (t_s - start_s_) * a.velocity);
-    const double squared = way.squaredNorm();
-    const bool taut =
-        point.stiffness > 0 && squared > 1e-18 && squared > point.restLength * point.restLength;
-    return {way, taut ? squared : 0};
-  }
+  Strand strand(std::size_t storage, double t_s, const double* r) const;
+  Mat3 dampingOf(std::size_t storage, const Strand& strand) const;
+  StrandScene sceneAt(double t_s) const;
   void load(std::span<const double> r, VectorArray& out) const;
-  Mat3 dampingOf(const Point& point, const Strand& strand) const;
-  void prepareDamping(double t_s, std::span<const double> r);
+  void positionForces(const StrandScene& scene, std::span<const double> r);
 
   Skin skin_;
   AdaptiveStepper stepper_;
-  std::vector<double> inverseMass_;
-  std::vector<Point> points_;
-  std::vector<Anchor> anchors_;
+  std::vector<double> inverseMass_;  // per coordinate
+  FloatArray inverseMasses_;         // per point, in storage order
   std::unique_ptr<SurfaceStepper> surface_;
-  // Damping of the strands for the positions below: f −= C (v − v_anchor). Leapfrog's inner
-  // iteration asks for velocity forces several times at one place.
-  std::vector<Mat3> strandDamping_;
-  std::vector<double> dampingPlace_;
-  double dampingTime_s_ = 0;
   OdeState ode_;
-  VectorArray position_, velocity_, positionBefore_, velocityBefore_, force_;
+  VectorArray position_, velocity_, force_, change_;
   std::vector<Eigen::Triplet<double>> entries_, dampingEntries_;
 
   // The interval being integrated.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fascia/base/assert.h>
+#include <fascia/math/points.h>
 #include <fascia/skin/cloth/cloth_stepper.h>
 #include <fascia/skin/grid/grid_skin.h>
 #include <fascia/skin/ode_skin.h>
@@ -34,6 +35,15 @@ constexpr float kSlidingReach = 0.02f;
 // How often stretched skin is shortened and taken out of the flesh again in one interval, at most.
 constexpr int kStretchRounds = 8;
 constexpr float kStretchedBeyond = 0.1f;  // as long as an edge is longer than it may be by so much
+// Where more than this share of all edges is still twice as long as may be, nothing has helped.
+// (Where fewer are, something is squeezed for a moment, and comes free.)
+constexpr float kTorn = 1;
+constexpr double kMostTorn = 0.005;
+// Stretched skin is also shortened within an interval, after so many steps: very stiff skin has
+// pulled far by then.
+constexpr int kStepsBetweenLimits = 32;
+// How far skin may fall within an interval, as a share of its size: at usual gravity it does not.
+constexpr double kFall = 0.02;
 // Fastest speed relative to the flesh that a state may hold, in skin sizes per second.
 constexpr double kFastest_per_s = 60;
 
@@ -52,15 +62,19 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
-bool isBroken(const VectorArray& r, const VectorArray& v, const VectorArray& anchorVelocity,
-              float fastest, std::size_t k) {
-  float speed = 0, place = 0;
-  for (const auto axis : VectorArray::kAxes) {
-    const float relative = (v.*axis)[k] - (anchorVelocity.*axis)[k];
-    speed += relative * relative;
-    place += (r.*axis)[k] * (r.*axis)[k];
-  }
-  return !(speed < fastest * fastest && place < 1e18f);
+// A point that is not where or as fast as a point can be is lost.
+bool isLost(const VectorArray& r, const VectorArray& v, std::size_t k) {
+  constexpr float kFar = 1e18f;  // squared
+  return !(floatPointAt(r, k).squaredNorm() < kFar && floatPointAt(v, k).squaredNorm() < kFar);
+}
+
+void slowDown(VectorArray& velocity, const VectorArray& anchorVelocity, float fastest,
+              std::size_t k) {
+  const Eigen::Vector3f flesh = floatPointAt(anchorVelocity, k),
+                        relative = floatPointAt(velocity, k) - flesh;
+  const float speed = relative.norm();
+  if (speed > fastest)
+    setPoint(velocity, k, Vec3((flesh + fastest / speed * relative).cast<double>()));
 }
 
 std::unique_ptr<SurfaceStepper> makeSurface(const Skin& skin) {
@@ -125,8 +139,15 @@ int SkinStepper::intervalCount(const SkinPose& end, double span_s, const SkinSta
   }
   const double turn = std::acos(std::clamp(leastCosine, -1.0, 1.0));
   const int forTurn = static_cast<int>(std::ceil(std::min(turn / kTurn_rad, 1.0 * kMostIntervals)));
-  const int forTime = static_cast<int>(std::ceil(span_s / skin_.settings().interval_s - 1e-6));
+  const double longest_s = std::min(skin_.settings().interval_s, fallTime());
+  const int forTime = static_cast<int>(std::ceil(span_s / longest_s - 1e-6));
   return std::max({1, forTurn, forTime});
+}
+
+// In which skin at rest falls as far as may be between two contact tests.
+double SkinStepper::fallTime() const {
+  const double gravity = skin_.settings().gravity_m_per_s2.norm();
+  return std::sqrt(2 * kFall * skin_.size_m() / std::max(gravity, 1e-6));
 }
 
 // Anchors and half spaces for a state that comes from somewhere else.
@@ -221,19 +242,24 @@ void SkinStepper::surround(const SkinPose& pose, double duration_s, SkinState& s
   state.starting = false;
   const auto jump = static_cast<float>(kAnchorJump * skin_.size_m());
   if (!(way < jump * jump)) {
-    // A posture jump: the skin jumps with the flesh and starts anew from there.
-    placeSkin(skin_, pose, state);
+    // A posture jump: the skin jumps with the flesh.
+    startAnew(pose, state, stats);
     around.anchor = nextAnchor_;
     carried_ = nextCarried_;
-    around.anchorVelocity.fill(0.f);
-    around.normal.fill(0.f);
-    state.coarseVelocity.fill(0.f);
-    stats.repaired_points += skin_.pointCount();
   }
   placer_->placeFixed(pose, target_);
   for (const std::size_t k : skin_.fixedPoints())
     for (const auto axis : VectorArray::kAxes)
       (state.velocity.*axis)[k] = ((target_.*axis)[k] - (state.position.*axis)[k]) * rate;
+}
+
+// At rest, from where the flesh carries it.
+void SkinStepper::startAnew(const SkinPose& pose, SkinState& state, SkinStats& stats) const {
+  placeSkin(skin_, pose, state);
+  state.surroundings.anchorVelocity.fill(0.f);
+  state.surroundings.normal.fill(0.f);
+  state.coarseVelocity.fill(0.f);
+  stats.repaired_points += skin_.pointCount();
 }
 
 // The number of equal steps for an interval; readies the coefficients for their length.
@@ -261,7 +287,14 @@ void SkinStepper::leapfrog(int steps, double duration_s, SkinState& state, SkinS
     inputs.extraForce = &fatPressure_.force();
     inputs.stepEnd = &fatPressure_;
   }
-  surface_->run(inputs, steps, state.position, state.velocity);
+  for (int done = 0; done < steps; done += kStepsBetweenLimits) {
+    if (done > 0 && stretchLimit_.exceeded(state.position, kStretchedBeyond)) {
+      stretchLimit_.apply(skin_.points(), state.position, state.velocity);
+      skin_.topology().complete(state.position);
+    }
+    surface_->run(inputs, done, std::min(kStepsBetweenLimits, steps - done), state.position,
+                  state.velocity);
+  }
   std::swap(carried_, nextCarried_);
   const double h = coefficients_.step_s;
   stats.steps += static_cast<std::uint64_t>(steps);
@@ -310,6 +343,11 @@ void SkinStepper::settle(const SkinPose& pose, double duration_s, SkinState& sta
     stretchLimit_.apply(skin_.points(), state.position, state.velocity);
     leaveFlesh();
   }
+  if (stretchLimit_.exceeded(state.position, kTorn) &&
+      stretchLimit_.shareExceeding(state.position, kTorn) > kMostTorn) {
+    startAnew(pose, state, stats);
+    leaveFlesh();
+  }
   if (skin_.selfContact()) {
     state.surroundings.fleshNormal = state.surroundings.normal;
     selfContact_.writeHalfSpaces(state.position, state.velocity, static_cast<float>(duration_s),
@@ -348,8 +386,8 @@ void SkinStepper::limitSlide(SkinState& state) const {
   }
 }
 
-// No state leaves a step with a number that is not finite or a speed that no body has: such points
-// return to where the flesh carries them.
+// No state leaves a step with a number that is not finite, whose point returns to where the flesh
+// carries it, or with a speed that no body has, which is lowered.
 void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stats) {
   const auto fastest = static_cast<float>(kFastest_per_s * skin_.size_m());
   const VectorArray& anchorVelocity = state.surroundings.anchorVelocity;
@@ -359,19 +397,25 @@ void SkinStepper::repair(const SkinPose& pose, SkinState& state, SkinStats& stat
   };
   const std::span<const SkinTopology::Range> ranges = skin_.topology().ranges();
   if (std::none_of(ranges.begin(), ranges.end(), broken)) return;
-  std::vector<std::size_t> points;
-  for (const PointBlock& b : skin_.blocks())
-    for (std::size_t k = b.first; k < b.first + b.count; ++k)
-      if (isBroken(state.position, state.velocity, anchorVelocity, fastest, k)) points.push_back(k);
-  SkinState placed;
-  placeSkin(skin_, pose, placed);
-  for (const std::size_t k : points) {
-    for (const auto axis : VectorArray::kAxes) {
-      (state.position.*axis)[k] = (placed.position.*axis)[k];
-      (state.velocity.*axis)[k] = (state.surroundings.anchorVelocity.*axis)[k];
+  std::vector<std::size_t> lost;
+  for (const PointBlock& b : skin_.blocks()) {
+    for (std::size_t k = b.first; k < b.first + b.count; ++k) {
+      if (isLost(state.position, state.velocity, k))
+        lost.push_back(k);
+      else
+        slowDown(state.velocity, anchorVelocity, fastest, k);
     }
   }
-  stats.repaired_points += points.size();
+  if (lost.empty()) return;
+  SkinState placed;
+  placeSkin(skin_, pose, placed);
+  for (const std::size_t k : lost) {
+    for (const auto axis : VectorArray::kAxes) {
+      (state.position.*axis)[k] = (placed.position.*axis)[k];
+      (state.velocity.*axis)[k] = (anchorVelocity.*axis)[k];
+    }
+  }
+  stats.repaired_points += lost.size();
 }
 
 SkinWorkspace::SkinWorkspace() = default;

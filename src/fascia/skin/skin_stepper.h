@@ -22,12 +22,14 @@ class SkinStepper final : public SkinRun {
 
  private:
   int intervalCount(const SkinPose& end, double span_s, const SkinState& state) const;
+  double fallTime() const;
   void begin(const SkinPose& pose, SkinState& state);
   void interval(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   void odeInterval(SkinPoseSource& poses, double start_s, double end_s, SkinState& state,
                    SkinStats& stats);
   void rideOnCoarse(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);
   const FloatArray& carryShare(const SkinState& state);
+  void startAnew(const SkinPose& pose, SkinState& state, SkinStats& stats) const;
   int chooseStep(double duration_s);
   void leapfrog(int steps, double duration_s, SkinState& state, SkinStats& stats);
   void surround(const SkinPose& pose, double duration_s, SkinState& state, SkinStats& stats);

@@ -1,12 +1,14 @@
-#include "bench/peers/bullet_sheet.h"
-
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
+#include <fmt/core.h>
 
+#include <memory>
 #include <vector>
+
+#include "bench/peers/peer.h"
 
 namespace fascia {
 namespace {
@@ -22,11 +24,16 @@ btTransform sphereTransform(int sphere, double time_s) {
   return transform;
 }
 
+// Passes over the links in a step; they are as stiff as Bullet allows.
+constexpr int kBulletIterations = 4;
+constexpr int kBulletDefaultSteps = 5;  // of its world, in a frame
+
+// The position-based soft body.
 class BulletSheet final : public SheetSolver {
  public:
-  BulletSheet(const SheetScene& scene, const BulletSettings& settings)
+  BulletSheet(const SheetScene& scene, int steps)
       : scene_(scene),
-        settings_(settings),
+        steps_(steps),
         sphereShape_(static_cast<btScalar>(SheetScene::kSphereRadius_m)) {
     const btVector3 gravity = toBullet({0, -SheetScene::kGravity_m_per_s2, 0});
     world_.setGravity(gravity);
@@ -50,8 +57,8 @@ class BulletSheet final : public SheetSolver {
   BulletSheet& operator=(const BulletSheet&) = delete;
 
   void advanceFrame() override {
-    const double step_s = SheetScene::kFrame_s / settings_.substeps;
-    for (int s = 0; s < settings_.substeps; ++s) {
+    const double step_s = SheetScene::kFrame_s / steps_;
+    for (int s = 0; s < steps_; ++s) {
       time_s_ += step_s;
       for (std::size_t i = 0; i < spheres_.size(); ++i)
         states_[i]->setWorldTransform(sphereTransform(static_cast<int>(i), time_s_));
@@ -85,7 +92,7 @@ class BulletSheet final : public SheetSolver {
     constexpr btScalar kCollisionMargin_m = 0.01f;
     sheet_->getCollisionShape()->setMargin(kCollisionMargin_m);
     sheet_->m_materials[0]->m_kLST = 1;
-    sheet_->m_cfg.piterations = settings_.iterations;
+    sheet_->m_cfg.piterations = kBulletIterations;
     sheet_->m_cfg.kDP = 0.001f;  // damping
     sheet_->m_cfg.kDF = 0.5f;    // friction
     sheet_->m_cfg.kCHR = 1;      // hardness of contacts
@@ -105,7 +112,7 @@ class BulletSheet final : public SheetSolver {
   }
 
   SheetScene scene_;
-  BulletSettings settings_;
+  int steps_;
   btSoftBodyRigidBodyCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
@@ -120,9 +127,14 @@ class BulletSheet final : public SheetSolver {
 
 }  // namespace
 
-std::unique_ptr<SheetSolver> makeBulletSheet(const SheetScene& scene,
-                                             const BulletSettings& settings) {
-  return std::make_unique<BulletSheet>(scene, settings);
-}
+const Peer kBulletPeer{
+    "Bullet",
+    [](int effort) {
+      return fmt::format("{} x {}", effort * kBulletDefaultSteps, kBulletIterations);
+    },
+    [](const SheetScene& scene, int effort, int) -> std::unique_ptr<SheetSolver> {
+      return std::make_unique<BulletSheet>(scene, effort * kBulletDefaultSteps);
+    },
+    false};
 
 }  // namespace fascia

@@ -142,7 +142,7 @@ class FasciaSheet final : public SheetSolver {
                             nullptr,
                             {0, -static_cast<float>(SheetScene::kGravity_m_per_s2), 0}};
     for (int n = 0; n < intervals_; ++n) {
-      stepper_->run(inputs, steps_, position_, velocity_);
+      stepper_->run(inputs, 0, steps_, position_, velocity_);
       time_s_ += interval_s();
       meetSpheres();
     }

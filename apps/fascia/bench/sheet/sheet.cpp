@@ -9,21 +9,20 @@
 
 #include "bench/benches.h"
 #include "bench/machine.h"
+#include "bench/peers/peer.h"
 #include "bench/sheet/fascia_sheet.h"
 #include "bench/sheet/sheet_options.h"
 #include "console.h"
-#ifdef FASCIA_WITH_BULLET
-#include "bench/peers/bullet_sheet.h"
-#endif
 
 namespace fascia {
 namespace {
 
 constexpr const char* kSheetFooter =
     R"(Cloth of 2 m x 2 m and 1 kg, pinned at two edges, over seven moving spheres, stepped by limits;
-with --skin also a skin that stretches as little, stepped by the leapfrog, and where Bullet is
-installed its soft body. A speed counts only with what stands beside it: how far edges stretch, how
-deep points are in the spheres, and how many were lost.
+with --skin also a skin that stretches as little, stepped by the leapfrog. Beside them the soft bodies
+of Bullet and Jolt, where those were found when this was built: each with its default effort, then
+twice as much, and so on, until it stretches no more than our cloth. A speed counts only with what
+stands beside it: how far edges stretch, how deep points are in the spheres, and how many were lost.
 
 Examples:
   fascia bench sheet
@@ -39,6 +38,8 @@ struct ClothBenchOptions : SheetOptions {
 // A skin as firm as stays below 10 % of stretch at so many points; larger ones take minutes.
 constexpr double kFirmSkin_N_per_m = 1131, kFirmerSkin_N_per_m = 3200;
 constexpr int kSmallSheet = 2000, kMostLeapfrogPoints = 20000;
+// A peer is not asked to try harder where a run of it would take longer than this.
+constexpr double kLongestPeerRun_s = 10;
 
 class ClothBenchReport {
  public:
@@ -88,14 +89,28 @@ SheetResult bestRun(const SheetScene& scene, const ClothBenchOptions& options, c
   return best;
 }
 
-void addFascia(const SheetScene& scene, const ClothBenchOptions& options,
-               const FasciaSettings& settings, const std::string& engine, int threads,
-               ClothBenchReport& report) {
+SheetResult addFascia(const SheetScene& scene, const ClothBenchOptions& options,
+                      const FasciaSettings& settings, const std::string& engine, int threads,
+                      ClothBenchReport& report) {
   const ThreadLimit limit(threads);
   int steps = 0;
   const SheetResult result =
       bestRun(scene, options, [&] { return makeFasciaSheet(scene, settings, steps); });
   report.add(scene.side * scene.side, engine, fmt::format("{} steps", steps), threads, result);
+  return result;
+}
+
+// The peer, trying harder and harder until it stretches no more than `stretch`.
+void addPeer(const Peer& peer, const SheetScene& scene, const ClothBenchOptions& options,
+             double stretch, int threads, ClothBenchReport& report) {
+  double nextRun_s = 0;
+  for (int effort = 1; nextRun_s < kLongestPeerRun_s; effort *= 2) {
+    const SheetResult result =
+        bestRun(scene, options, [&] { return peer.make(scene, effort, threads); });
+    report.add(scene.side * scene.side, peer.name, peer.setting(effort), threads, result);
+    if (result.stretch <= stretch) return;
+    nextRun_s = 2 * result.frame_s * options.frames * options.runs;
+  }
 }
 
 void runSheet(const ClothBenchOptions& options, const Console& console) {
@@ -105,21 +120,19 @@ void runSheet(const ClothBenchOptions& options, const Console& console) {
     const int points = scene.side * scene.side;
     const auto chosen = static_cast<int>(
         std::lround(SheetScene::kFrame_s / clothStep_s(static_cast<std::size_t>(points))));
+    double stretch = 0;
     for (const int threads : options.threads)
-      addFascia(scene, options, FasciaSettings::cloth(options.steps > 0 ? options.steps : chosen),
-                "cloth", threads, report);
-    if (points > kMostLeapfrogPoints) continue;
-    if (options.skin)
+      stretch = addFascia(scene, options,
+                          FasciaSettings::cloth(options.steps > 0 ? options.steps : chosen),
+                          "cloth", threads, report)
+                    .stretch;
+    if (options.skin && points <= kMostLeapfrogPoints)
       addFascia(
           scene, options,
           FasciaSettings::skin(points < kSmallSheet ? kFirmSkin_N_per_m : kFirmerSkin_N_per_m),
           "skin", 1, report);
-#ifdef FASCIA_WITH_BULLET
-    const ThreadLimit oneThread(1);
-    const BulletSettings bullet;
-    report.add(points, "Bullet", fmt::format("{} x {}", bullet.substeps, bullet.iterations), 1,
-               bestRun(scene, options, [&] { return makeBulletSheet(scene, bullet); }));
-#endif
+    for (const Peer& peer : sheetPeers())
+      addPeer(peer, scene, options, stretch, peer.threaded ? options.threads.back() : 1, report);
   }
   report.finish();
 }
@@ -127,7 +140,7 @@ void runSheet(const ClothBenchOptions& options, const Console& console) {
 }  // namespace
 
 void addSheetBench(CLI::App& group, Console& console) {
-  CLI::App& command = *group.add_subcommand("sheet", "Cloth on spheres");
+  CLI::App& command = *group.add_subcommand("sheet", "Cloth on spheres, beside Bullet and Jolt");
   const auto options = std::make_shared<ClothBenchOptions>();
   addSheetOptions(command, *options);
   addNumbers(command, "--threads", options->threads, "Numbers of threads (default: 1,2)", 1, 1024);

@@ -1,7 +1,9 @@
 #include <fascia/math/ode/adaptive_stepper.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -48,7 +50,9 @@ void check(const StepperOptions& o) {
 }
 
 bool allFinite(std::span<const double> x) {
-  return std::ranges::all_of(x, [](double value) { return std::isfinite(value); });
+  FiniteCheck check;
+  for (const double value : x) check.add(value);
+  return check.allFinite();
 }
 
 // Cubic Hermite interpolation between two states, s in [0, 1].
@@ -171,12 +175,18 @@ double AdaptiveStepper::shorter(const OdeState& from, std::span<const double> in
 bool AdaptiveStepper::sound(std::span<const double> inverseMass, const OdeState& from,
                             double error) const {
   if (!std::isfinite(error)) return false;
+  // No early way out: the loop then runs on vectors, on which signs are told apart for nothing.
+  const double limit = options_.move_limit_m;
+  const double *w = inverseMass.data(), *before = from.r.data();
+  const double *r = trial_.r.data(), *v = trial_.v.data();
+  FiniteCheck check;
+  std::uint64_t runaway = 0;
   for (std::size_t i = 0; i < from.r.size(); ++i) {
-    const double move = std::abs(trial_.r[i] - from.r[i]);
-    if (!std::isfinite(move) || !std::isfinite(trial_.v[i])) return false;
-    if (inverseMass[i] > 0 && move > options_.move_limit_m) return false;
+    const double move = std::abs(r[i] - before[i]);
+    check.add(move), check.add(v[i]);
+    runaway |= std::bit_cast<std::uint64_t>(limit - move) & std::bit_cast<std::uint64_t>(0 - w[i]);
   }
-  return true;
+  return check.allFinite() && runaway >> 63 == 0;
 }
 
 // Projects the trial and keeps in free_ what it was. Returns the correction.

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -66,18 +69,45 @@ class Integrator {
   IntegratorSettings settings_;
 };
 
+// Takes numbers and knows whether all were finite. Without branches and comparisons, which loops on
+// vectors of 64 bits need not have: an exponent of ones carries over into the sign.
+class FiniteCheck {
+ public:
+  void add(double x) { carried_ |= (std::bit_cast<std::uint64_t>(x) & kExponent) + kUnit; }
+  bool allFinite() const { return carried_ >> 63 == 0; }
+
+ private:
+  static constexpr std::uint64_t kExponent = 0x7ff0000000000000, kUnit = 0x0010000000000000;
+  std::uint64_t carried_ = 0;
+};
+
+// max_i |error(i)| factor(i) for i in [0, count); NaN if any component is not finite.
+template <class Error, class Factor>
+double largestScaled(std::size_t count, Error&& error, Factor&& factor) {
+  // No early way out, and several maxima side by side: the loop then runs on vectors.
+  constexpr std::size_t kLanes = 4;
+  std::array<double, kLanes> largest{};
+  FiniteCheck check;
+  const auto take = [&](std::size_t i, double& most) {
+    const double e = std::abs(error(i)) * factor(i);
+    most = e > most ? e : most;
+    check.add(e);
+  };
+  const std::size_t whole = count / kLanes * kLanes;
+  for (std::size_t i = 0; i < whole; i += kLanes)
+    for (std::size_t l = 0; l < kLanes; ++l) take(i + l, largest[l]);
+  for (std::size_t i = whole; i < count; ++i) take(i, largest[i - whole]);
+  if (!check.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  return *std::max_element(largest.begin(), largest.end());
+}
+
 // max_i |error(i)| scale(reference[i]); NaN if any component is not finite.
 template <class Error>
 double scaledNorm(std::span<const double> reference, const ErrorScale& scale, Error&& error) {
-  // No early way out: the loop then runs on vectors.
-  double largest = 0;
-  bool finite = true;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    const double e = std::abs(error(i)) * scale(reference[i]);
-    largest = e > largest ? e : largest;
-    finite &= e < std::numeric_limits<double>::infinity();
-  }
-  return finite ? largest : std::numeric_limits<double>::quiet_NaN();
+  const std::size_t count = reference.size();
+  if (scale.relative)
+    return largestScaled(count, error, [&](std::size_t i) { return scale(reference[i]); });
+  return largestScaled(count, error, [one = scale(0)](std::size_t) { return one; });
 }
 
 }  // namespace fascia

@@ -34,6 +34,13 @@ class MeasuredSystem final : public SecondOrderSystem {
     const Timer timer(cost_->forces_s);
     inner_->addVelocityForces(t_s, r, v, f);
   }
+  bool midpointKick(double t_s, std::span<const double> r, std::span<const double> v, double h_s,
+                    std::span<double> out) override {
+    const Timer timer(cost_->forces_s);
+    const bool kicked = inner_->midpointKick(t_s, r, v, h_s, out);
+    cost_->force_evaluations += kicked ? 1 : 0;
+    return kicked;
+  }
   void forceJacobian(double t_s, std::span<const double> r, std::span<const double> v,
                      SparseMatrix& dfdr, SparseMatrix& dfdv) override {
     const Timer timer(cost_->forces_s);

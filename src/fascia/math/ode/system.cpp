@@ -21,6 +21,11 @@ Eigen::VectorXd copy(std::span<const double> x) {
 void SecondOrderSystem::addVelocityForces(double, std::span<const double>, std::span<const double>,
                                           std::span<double>) {}
 
+bool SecondOrderSystem::midpointKick(double, std::span<const double>, std::span<const double>,
+                                     double, std::span<double>) {
+  return false;
+}
+
 void SecondOrderSystem::forceJacobian(double t_s, std::span<const double> r,
                                       std::span<const double> v, SparseMatrix& dfdr,
                                       SparseMatrix& dfdv) {

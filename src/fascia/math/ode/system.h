@@ -23,6 +23,10 @@ class SecondOrderSystem {
   virtual void addVelocityForces(double t_s, std::span<const double> r, std::span<const double> v,
                                  std::span<double> f);
   virtual bool hasVelocityForces() const { return false; }
+  // What Verlet's step needs of them: writes v⁺ = v + h M⁻¹ f(t, r, ½ (v + v⁺)), f being the whole
+  // force. False: the system cannot solve this for v⁺, and Verlet iterates.
+  virtual bool midpointKick(double t_s, std::span<const double> r, std::span<const double> v,
+                            double h_s, std::span<double> out);
   // True if forces change with t alone (moving anchors): the Rosenbrock solver needs ∂f/∂t then.
   virtual bool forcesDependOnTime() const { return false; }
 

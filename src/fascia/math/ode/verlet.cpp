@@ -6,7 +6,8 @@ namespace fascia {
 namespace {
 
 // Leapfrog-Verlet 2(1) with velocity-dependent forces (Turner & Gobbetti 1998, eqs. 7a–7h, after
-// Mathiowetz). Their (7f) prints h/2 · a, which is of first order only; it has to be h · a.
+// Mathiowetz). Their (7f) prints h/2 · a, which is of first order only; it has to be h · a. Systems
+// that can solve (7c)–(7g) for the new velocity are asked to; others are iterated on.
 class Verlet final : public Integrator {
  public:
   std::string_view name() const override { return "verlet"; }
@@ -18,24 +19,31 @@ class Verlet final : public Integrator {
                   "the state fits the system");
     FASCIA_ASSERT(h > 0, "time goes on");
     const std::size_t n = system.size();
-    to.resize(n), positionForce_.assign(n, 0.0);
+    to.resize(n);
     to.t_s = from.t_s + h;
     for (std::size_t i = 0; i < n; ++i) to.r[i] = from.r[i] + 0.5 * h * from.v[i];
-    system.addPositionForces(from.t_s + 0.5 * h, to.r, positionForce_);
-
-    if (!system.hasVelocityForces()) {
-      kick(system.inverseMass(), positionForce_, from, h, to);
-    } else if (!iterateVelocity(system, from, h, to)) {
+    if (!system.midpointKick(from.t_s + 0.5 * h, to.r, from.v, h, to.v) &&
+        !kickByForces(system, from, h, to))
       return kStepFailed;
-    }
-    for (std::size_t i = 0; i < n; ++i) to.r[i] += 0.5 * h * to.v[i];
-
+    const double half = 0.5 * h;
+    const double *v = from.v.data(), *vAfter = to.v.data();
+    double* r = to.r.data();
     // Embedded Euler r + h v (eq. 9) differs from r⁺ by h/2 (v − v⁺).
-    return scaledNorm(from.r, settings_.position_scale,
-                      [&](std::size_t i) { return 0.5 * h * (to.v[i] - from.v[i]); });
+    return scaledNorm(from.r, settings_.position_scale, [=](std::size_t i) {
+      r[i] += half * vAfter[i];
+      return half * (vAfter[i] - v[i]);
+    });
   }
 
  private:
+  bool kickByForces(SecondOrderSystem& system, const OdeState& from, double h, OdeState& to) {
+    positionForce_.assign(system.size(), 0.0);
+    system.addPositionForces(from.t_s + 0.5 * h, to.r, positionForce_);
+    if (system.hasVelocityForces()) return iterateVelocity(system, from, h, to);
+    kick(system.inverseMass(), positionForce_, from, h, to);
+    return true;
+  }
+
   // v⁺ = v + h M⁻¹ f
   static void kick(std::span<const double> w, std::span<const double> force, const OdeState& from,
                    double h, OdeState& to) {

@@ -96,7 +96,7 @@ void ClothStepper::prepareMotion(const PointModel& p, double h) {
   }
 }
 
-void ClothStepper::run(const StepInputs& inputs, int steps, VectorArray& position,
+void ClothStepper::run(const StepInputs& inputs, int firstStep, int steps, VectorArray& position,
                        VectorArray& velocity) {
   FASCIA_ASSERT(!inputs.extraForce, "only meshes have fat that presses");
   FASCIA_ASSERT(steps > 0 && position.size() == grid_.storage(), "the state is of this grid");
@@ -111,11 +111,11 @@ void ClothStepper::run(const StepInputs& inputs, int steps, VectorArray& positio
   // Resting points come this near between two steps.
   const float* g = inputs.gravity;
   s.touch_m = 0.1f * s.step_s * s.step_s * std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  s.time_s = s.step_s;
+  s.time_s = static_cast<float>(firstStep + 1) * s.step_s;
   forBands(levels_[0], 0, [&](int begin, int end) { clothBegin(s, levels_, motion_, begin, end); });
-  for (int n = 0; n < steps; ++n) {
+  for (int n = firstStep; n < firstStep + steps; ++n) {
     s.time_s = static_cast<float>(n + 1) * s.step_s;
-    s.isLast = n + 1 == steps;
+    s.isLast = n + 1 == firstStep + steps;
     step(s, n);
   }
 }

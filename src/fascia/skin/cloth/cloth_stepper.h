@@ -38,7 +38,7 @@ class ClothStepper final : public SurfaceStepper {
   void forces(const VectorArray& position, VectorArray& force) override;
   // Reads the step's length, slide and bounce of inputs.step, and inputs.points as they were given
   // to the constructor.
-  void run(const StepInputs& inputs, int steps, VectorArray& position,
+  void run(const StepInputs& inputs, int firstStep, int steps, VectorArray& position,
            VectorArray& velocity) override;
 
  private:

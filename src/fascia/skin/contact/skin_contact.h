@@ -28,8 +28,8 @@ class SkinContact {
   // Projects points out of the solids exactly, removes the approaching part of their velocity
   // relative to the flesh, and writes each point's half space (normal, offset, flesh velocity) for
   // the steps that follow: the nearest solid within `reach_m`. A point in several solids is
-  // projected in turn until it is outside of all; what kPasses do not bring out (a narrow crease, a
-  // pocket that solids close) leaves all of them at once.
+  // projected in turn until it is outside of all; what many turns do not bring out (a narrow
+  // crease, a pocket that solids close) leaves all of them at once.
   virtual Result project(const MovingField& field, const PointModel& points, float reach_m,
                          float restitution, VectorArray& position, VectorArray& velocity,
                          PointSurroundings& around) = 0;
@@ -39,10 +39,6 @@ class SkinContact {
                         const VectorArray& position) const = 0;
 
  protected:
-  static constexpr int kPasses = 16;  // more than creases of three solids need
-  // A point that was pushed farther than this may have been pushed into another solid.
-  static constexpr float kRetest_m = 1e-5f;
-
   // Of the parts' results, whose speeds are squared.
   static Result largest(std::span<const Result> parts) {
     Result all;

@@ -8,28 +8,53 @@ namespace fascia {
 
 bool SolidMotions::follow(const MovingField& field, CulledSolids& out) {
   const std::size_t solids = field.solidCount();
-  const bool first = corners_.size() != solids * kCorners;
+  const bool first = solids_.size() != solids;
   if (first) out.resize(solids);
-  corners_.resize(solids * kCorners);
+  solids_.resize(solids);
   for (std::size_t s = 0; s < solids; ++s) {
     const SolidId id(static_cast<std::int64_t>(s));
     const Transform frame = field.frame(id);
     const MovingField::Outline& outline = field.outline(id);
-    std::array<Eigen::Vector3f, kCorners> now;
-    for (std::size_t c = 0; c < kCorners; ++c) now[c] = frame.point(outline[c]).cast<float>();
-    Eigen::Vector3f* before = corners_.data() + s * kCorners;
-    if (first) std::copy(now.begin(), now.end(), before);
-    CulledSolids::Motion motion =
-        between(std::span<const Eigen::Vector3f, kCorners>(before, kCorners), now);
+    Solid& solid = solids_[s];
+    CulledSolids::Motion motion;
+    if (!first && outline == solid.outline) {
+      motion = rigid(solid.frame, frame, outline);
+    } else {
+      Corners before, now;
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        now[c] = frame.point(outline[c]).cast<float>();
+        before[c] = first ? now[c] : solid.frame.point(solid.outline[c]).cast<float>();
+      }
+      motion = between(before, now);
+      solid.outline = outline;
+    }
+    solid.frame = frame;
     motion.steepness = static_cast<float>(field.lipschitz(id));
     out.setMotion(s, motion);
-    std::copy(now.begin(), now.end(), before);
   }
   return !first;
 }
 
-CulledSolids::Motion SolidMotions::between(std::span<const Eigen::Vector3f, kCorners> before,
-                                           std::span<const Eigen::Vector3f, kCorners> now) {
+// While only the frame changes, the matter goes with it.
+CulledSolids::Motion SolidMotions::rigid(const Transform& before, const Transform& now,
+                                         const MovingField::Outline& outline) {
+  const Mat3 change = now.rotation * before.rotation.transpose() - Mat3::Identity();
+  CulledSolids::Motion m;
+  m.change = change.cast<float>();
+  m.origin = before.translation_m.cast<float>();
+  m.shift = (now.translation_m + change * (m.origin.cast<double>() - before.translation_m) -
+             before.translation_m)
+                .cast<float>();
+  m.turn = m.change.norm();
+  // What is rounded, on the way to floats and by rotations that are not quite orthonormal.
+  constexpr double kRounding = 1e-6;
+  const double size_m = (outline[kCorners - 1] - outline[0]).norm();
+  m.extra_m = static_cast<float>(kRounding *
+                                 (size_m + before.translation_m.norm() + now.translation_m.norm()));
+  return m;
+}
+
+CulledSolids::Motion SolidMotions::between(const Corners& before, const Corners& now) {
   CulledSolids::Motion m;
   Eigen::Matrix3f edges, edgesNow;
   for (int a = 0; a < 3; ++a) {

@@ -1,13 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <fascia/field/field.h>
-#include <fascia/skin/contact/solid_cull_kernels.h>
+#include <fascia/skin/contact/culled_solids.h>
 
 namespace fascia {
 
@@ -21,11 +21,17 @@ class SolidMotions {
 
  private:
   static constexpr std::size_t kCorners = MovingField::kOutline;
+  using Corners = std::array<Eigen::Vector3f, kCorners>;
+  struct Solid {
+    Transform frame;
+    MovingField::Outline outline;  // in the frame
+  };
 
-  static CulledSolids::Motion between(std::span<const Eigen::Vector3f, kCorners> before,
-                                      std::span<const Eigen::Vector3f, kCorners> now);
+  static CulledSolids::Motion rigid(const Transform& before, const Transform& now,
+                                    const MovingField::Outline& outline);
+  static CulledSolids::Motion between(const Corners& before, const Corners& now);
 
-  std::vector<Eigen::Vector3f> corners_;  // of each solid's outline
+  std::vector<Solid> solids_;  // where they were
 };
 
 }  // namespace fascia

@@ -22,19 +22,19 @@ class GridSurfaceStepper final : public SurfaceStepper {
     if (grid_.bending().active()) grid_.bending().addForces(position, force);
   }
 
-  void run(const StepInputs& inputs, int steps, VectorArray& position,
+  void run(const StepInputs& inputs, int firstStep, int steps, VectorArray& position,
            VectorArray& velocity) override {
     FASCIA_ASSERT(!inputs.extraForce, "only meshes have fat that presses");
     SweepModel model{&grid_.layout(), &grid_.elastic().coefficients(), inputs};
     if (!grid_.bending().active()) {
-      stepper_.run(model, 0, steps, position, velocity);
+      stepper_.run(model, firstStep, steps, position, velocity);
       return;
     }
     model.inputs.extraForce = &bendingForce_;
     for (int s = 0; s < steps; ++s) {
       bendingForce_.fill(0.f);
       grid_.bending().addForces(position, bendingForce_);
-      stepper_.run(model, s, 1, position, velocity);
+      stepper_.run(model, firstStep + s, 1, position, velocity);
     }
   }
 

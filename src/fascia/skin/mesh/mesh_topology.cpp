@@ -4,6 +4,7 @@
 
 #include <fascia/math/points.h>
 #include <fascia/skin/mesh/mesh_kernels.h>
+#include <fascia/skin/mesh/mesh_stretch_limit.h>
 
 namespace fascia {
 namespace {
@@ -15,9 +16,9 @@ class MeshSurfaceStepper final : public SurfaceStepper {
   void forces(const VectorArray& position, VectorArray& force) override {
     stepper_.forces(position, force);
   }
-  void run(const StepInputs& inputs, int steps, VectorArray& position,
+  void run(const StepInputs& inputs, int firstStep, int steps, VectorArray& position,
            VectorArray& velocity) override {
-    stepper_.run(inputs, 0, steps, position, velocity);
+    stepper_.run(inputs, firstStep, steps, position, velocity);
   }
 
  private:
@@ -38,9 +39,8 @@ void MeshTopology::addForceJacobian(const VectorArray& position,
   membrane_.addForceJacobian(position, false, entries);
 }
 
-// One level: meshes have no rows to take every second of.
 StretchLimit MeshTopology::makeStretchLimit() const {
-  return StretchLimit({{membrane_.edges(static_cast<float>(allowedStretch())), {}}});
+  return StretchLimit(meshStretchLimits(membrane_.edges(static_cast<float>(allowedStretch()))));
 }
 
 void MeshTopology::surface(const VectorArray& position, TriangleMesh& mesh) const {

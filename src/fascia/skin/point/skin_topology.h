@@ -19,9 +19,9 @@ class SurfaceStepper {
   virtual ~SurfaceStepper() = default;
   // All elastic forces, N; overwrites `force`.
   virtual void forces(const VectorArray& position, VectorArray& force) = 0;
-  // The stabilised leapfrog (leapfrog.h) over one interval. A grid takes no
-  // inputs.extraForce and no inputs.stepEnd.
-  virtual void run(const StepInputs& inputs, int steps, VectorArray& position,
+  // So many steps of the stabilised leapfrog (leapfrog.h), firstStep ones after an interval's start.
+  // A grid takes no inputs.extraForce and no inputs.stepEnd.
+  virtual void run(const StepInputs& inputs, int firstStep, int steps, VectorArray& position,
                    VectorArray& velocity) = 0;
 };
 

@@ -62,6 +62,16 @@ bool StretchLimit::exceeded(const VectorArray& position, float share) const {
   return anyEdgeExceeds(runs_, longest_m_, position, share);
 }
 
+double StretchLimit::shareExceeding(const VectorArray& position, float share) const {
+  if (levels_.empty()) return 0;
+  const std::vector<Edge>& edges = levels_.back().edges;
+  const auto count = std::ranges::count_if(edges, [&](const Edge& edge) {
+    return (floatPointAt(position, edge.b) - floatPointAt(position, edge.a)).norm() >
+           (1 + share) * edge.longest_m;
+  });
+  return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(edges.size(), 1));
+}
+
 void StretchLimit::sweep(const Level& level, const PointModel& points, VectorArray& position,
                          VectorArray& velocity) const {
   for (const Edge& edge : level.edges) shorten(edge, points, position, velocity);

@@ -38,6 +38,8 @@ class StretchLimit {
 
   // Whether an edge is longer than it may be by more than this part of that.
   bool exceeded(const VectorArray& position, float share) const;
+  // The share of all edges that are.
+  double shareExceeding(const VectorArray& position, float share) const;
   // Points that are not free stay where they are. Allocates when anything is too long for the first
   // time.
   void apply(const PointModel& points, VectorArray& position, VectorArray& velocity);

@@ -1,17 +1,15 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 
 #include <Eigen/Core>
 
 #include <fascia/base/aligned.h>
 #include <fascia/math/types.h>
-#include <fascia/skin/point/point_kernels.h>
 
 namespace fascia {
 
-// All solids of a field side by side, for tests of one block of points against each of them; the
-// kernels are dispatched at run time.
+// All solids of a field side by side, for tests of groups of points against each of them.
 class CulledSolids {
  public:
   static constexpr std::size_t kWide = 16;  // floats; the widest vector
@@ -54,14 +52,5 @@ class CulledSolids {
 
 // A gap that is not known.
 inline constexpr float kUnknownGap_m = -1e30f;
-
-// Takes from each solid's gap (padded() floats) how much nearer the block and it can have come: the
-// difference of their points' ways at the block's middle, and how much the ways differ over it.
-void ageGaps(const BlockMotion& block, const CulledSolids& solids, float* gaps);
-
-// Writes the numbers of the solids within `reach_m` of the box, by their own boxes and `gaps`
-// (nullptr: none known), ascending; `nearby` has room for padded() of them. Returns how many.
-std::size_t findNearSolids(const BlockBox& box, const CulledSolids& solids, float reach_m,
-                           const float* gaps, std::int32_t* nearby);
 
 }  // namespace fascia
