@@ -22,7 +22,9 @@ struct Cloth {
   void prepare(double h_s, const ContactResponse& contact = {}) {
     prepareStep(sheet.points, contact, h_s, sheet.step, AddedMass::none);
   }
-  void run(int steps) { stepper.run(sheet.model().inputs, 0, steps, sheet.position, sheet.velocity); }
+  void run(int steps) {
+    stepper.run(sheet.model().inputs, 0, steps, sheet.position, sheet.velocity);
+  }
   const GridLayout& layout() const { return sheet.layout; }
   Vec3 place(int i, int j) const { return at(sheet.position, layout().at(i, j)); }
   double maxStretch() const { return sheet.elastic.maxStretch(sheet.position); }

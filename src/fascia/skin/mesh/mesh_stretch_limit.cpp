@@ -122,6 +122,7 @@ class Leaders {
     add(nearest_.at(point), 0);
     for (const Graph::Way& way : ways) add(nearest_.at(way.to), way.length_m);
     std::vector<std::pair<float, std::uint32_t>> sorted;
+    sorted.reserve(distances.size());
     for (const auto& [leader, distance_m] : distances) sorted.push_back({distance_m, leader});
     std::ranges::sort(sorted);
 

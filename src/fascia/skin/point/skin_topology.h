@@ -19,8 +19,8 @@ class SurfaceStepper {
   virtual ~SurfaceStepper() = default;
   // All elastic forces, N; overwrites `force`.
   virtual void forces(const VectorArray& position, VectorArray& force) = 0;
-  // So many steps of the stabilised leapfrog (leapfrog.h), firstStep ones after an interval's start.
-  // A grid takes no inputs.extraForce and no inputs.stepEnd.
+  // So many steps of the stabilised leapfrog (leapfrog.h), firstStep ones after an interval's
+  // start. A grid takes no inputs.extraForce and no inputs.stepEnd.
   virtual void run(const StepInputs& inputs, int firstStep, int steps, VectorArray& position,
                    VectorArray& velocity) = 0;
 };
